@@ -1,4 +1,4 @@
-"""RocketPy flies the exported motor as high as we do.
+"""RocketPy flies the exported motor as high as we do, and has the rocket's balance where we have it.
 
 It runs in a process of its own, in which a warning is an error: with the Python of the environment variable
 HFA_ROCKETPY, or of .venv-rocketpy, which `make test` sets up. Without one these tests skip, unless
@@ -7,6 +7,7 @@ HFA_REQUIRE_ROCKETPY is set: then its absence is a failure.
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import shutil
@@ -16,6 +17,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.cli.run import hfa
+from tests.cli.shaped import GEOMETRY, engine
 
 from hfanalysis.flight.ascent import RAIL, SPEED, Ascent, ascend
 from hfanalysis.measured_flight.firing import firing
@@ -27,19 +30,6 @@ from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
 ROOT = Path(__file__).resolve().parents[2]
-
-GEOMETRY = """
-[rocket.geometry]
-nose = { kind = "ogive", length = "0.6 m" }
-body = { length = "3.64 m" }
-fins = { count = 4, root = "0.30 m", tip = "0.12 m", span = "0.16 m" }
-structure = { mass = "40 kg", center_of_gravity = "1.75 m" }
-tank_position = "2.1 m"
-chamber_position = "3.4 m"
-engine_mass = "12.5 kg"
-engine_center_of_gravity = "3.1 m"
-"""
-"""A rocket of the report's length and diameter; the rest is made up."""
 
 
 def interpreter() -> str:
@@ -127,3 +117,59 @@ def test_slopes_and_margin_are_rocketpy_s() -> None:
     assert center_of_pressure(components(shape, 0.3))[0] == pytest.approx(slope, rel=0.02)
     still = center_of_pressure(components(shape, 0.0))[1]
     assert (still - (3.556 - 2.344)) / 0.1524 == pytest.approx(margin, rel=0.02)
+
+
+BALANCE = """
+import csv, json, sys
+import numpy as np
+from rocketpy import CylindricalTank, Fluid, HybridMotor, MassBasedTank, Rocket
+
+rows = list(csv.DictReader(sys.stdin))
+column = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+once = np.diff(column["time [s]"], prepend=-1.0) > 1e-6
+time = column["time [s]"][once]
+points = lambda values: np.column_stack([time, values[once]]).tolist()
+liquid, held = column["liquid_mass [kg]"], column["tank_mass [kg]"]
+LENGTH, HEIGHT, BORE = 4.24, float(sys.argv[1]), 0.039497
+aft = lambda place: LENGTH - place  # from the tail
+tank = MassBasedTank(
+    name="tank", geometry=CylindricalTank(0.064097, HEIGHT), flux_time=float(time[-1]),
+    liquid=Fluid("liquid", 743.0), gas=Fluid("vapor", 260.0),  # saturated at 25 degC
+    liquid_mass=points(liquid), gas_mass=points(np.maximum(held - liquid, 0.0)),
+)
+motor = HybridMotor(
+    thrust_source=points(column["thrust [N]"]), burn_time=float(time[-1]), dry_mass=12.5, dry_inertia=(0, 0, 0),
+    nozzle_radius=0.0381, throat_radius=0.0233, nozzle_position=0.0, center_of_dry_mass_position=aft(3.1),
+    grain_number=1, grain_separation=0.0, grain_outer_radius=BORE, grain_initial_height=0.61, grain_density=900.0,
+    grain_initial_inner_radius=float(column["port_radius [m]"][0]),
+    grains_center_of_mass_position=aft(3.4 + 0.218e-3 / (np.pi * BORE**2) + 0.305),
+    coordinate_system_orientation="nozzle_to_combustion_chamber",
+)
+motor.add_tank(tank, position=aft(2.1 + 0.5 * HEIGHT))
+rocket = Rocket(
+    radius=0.07874, mass=40.0, inertia=(50, 50, 1), power_off_drag=0.5, power_on_drag=0.5,
+    center_of_mass_without_motor=aft(1.75), coordinate_system_orientation="tail_to_nose",
+)
+rocket.add_motor(motor, position=0.0)
+rocket.add_nose(length=0.6, kind="ogive", position=LENGTH)
+rocket.add_trapezoidal_fins(n=4, root_chord=0.30, tip_chord=0.12, span=0.16, position=aft(3.94))
+asked = np.linspace(0.0, time[-1], 9)
+print(json.dumps([[LENGTH - float(rocket.center_of_mass(t)), float(rocket.static_margin(t))] for t in asked]))
+"""
+"""The rocket of tests/cli/shaped.py as RocketPy has hybrids: tank, grain and empty engine, each where it is."""
+
+
+def test_balance_and_margin_of_a_simulated_engine_are_rocketpy_s_within_2_percent(tmp_path: Path) -> None:
+    interpreter()
+    assert hfa("simulate", engine(tmp_path), "--out", tmp_path / "out", "--quiet").status == 0
+    table = (tmp_path / "out" / "histories.csv").read_text()
+    found = json.loads((tmp_path / "out" / "simulate.json").read_text())
+    call = [interpreter(), "-c", BALANCE, repr(found["tank_length"]["value"])]
+    said = subprocess.run(call, input=table, capture_output=True, text=True, check=True).stdout
+    theirs = np.array(json.loads(said.splitlines()[-1]))
+    rows = list(csv.DictReader(table.splitlines()))
+    time = np.array([float(row["time [s]"]) for row in rows])
+    asked = np.linspace(0.0, time[-1], 9)
+    for name, column in (("center_of_gravity [m]", theirs[:, 0]), ("static_margin [calibers]", theirs[:, 1])):
+        ours = np.interp(asked, time, [float(row[name]) for row in rows])
+        assert ours == pytest.approx(column, rel=0.02), name

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 from tests.campaign.rows import made as campaign
+from tests.cli.run import hfa
 from tests.report.browser import CHROMIUM, Page, browser
 from tests.report.sample import channel, material
 from tests.report.test_page import hostile
@@ -25,6 +26,7 @@ from hfanalysis.report.compare import compare
 from hfanalysis.report.page import page
 from hfanalysis.report.pdf import print_page
 
+ENGINE = Path(__file__).parents[2] / "engines" / "maelstrom.toml"
 PRESSURES = '[data-chart="pressures"]'
 
 
@@ -447,6 +449,28 @@ def test_a_campaign_s_page_opens_without_complaint_and_fits_a_narrow_screen(tab:
     assert tab.ask("document.documentElement.scrollWidth") <= 390
     assert tab.ask("document.querySelectorAll('svg.chart circle').length") == 9
     assert tab.ask("document.querySelector('table a').getAttribute('href')") == "A/report.html"
+
+
+def test_an_engine_s_page_opens_without_complaint_and_reads_what_lies_along_its_axes(tab: Page, tmp_path: Path) -> None:
+    assert hfa("simulate", ENGINE, "--out", tmp_path, "--quiet").status == 0
+    tab.console.clear()
+    tab.requests.clear()
+    tab.forget()
+    tab.open(tmp_path / "maelstrom.html")
+    assert tab.console == []
+    assert {url for url in tab.requests if not url.startswith("data:")} == {(tmp_path / "maelstrom.html").as_uri()}
+    tab.ask("document.querySelectorAll('details.fold').forEach((fold) => { fold.open = true; })")
+    said = {}
+    for chart in ("thrust", "thrust_flow_length", "specific_impulse_mixture"):
+        left, top, width, height = tab.show(f'[data-chart="{chart}"] .plot')
+        tab.mouse("mouseMoved", left + 0.4 * width, top + 0.5 * height)
+        tab.settle()
+        said[chart] = str(tab.ask(f"document.querySelector('[data-chart=\"{chart}\"] .instant').textContent"))
+    assert re.fullmatch(r"t = [\d.]+ s", said["thrust"])
+    assert re.fullmatch(r"oxidizer flow = [\d.]+ kg/s", said["thrust_flow_length"])
+    assert re.fullmatch(r"O/F = [\d.]+", said["specific_impulse_mixture"])
+    tab.open(tmp_path / "maelstrom.html", width=390)
+    assert tab.ask("document.documentElement.scrollWidth") <= 390
 
 
 def test_two_tests_share_one_page(tab: Page, tmp_path: Path) -> None:

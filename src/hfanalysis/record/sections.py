@@ -288,7 +288,7 @@ class PublishedSection(Section):
         units, found = units_of(PUBLISHED[table]), {}
         for name, stated in getattr(self, table).items():
             if name not in units:
-                raise unknown_key(f"{table}.{name}", units)
+                raise Refused(str(unknown_key(name, units)), table)
             with refusing(table, name):
                 found[name] = parse_as(stated, units[name], "")
         return found

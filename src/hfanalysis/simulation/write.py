@@ -107,11 +107,14 @@ def histories(simulation: Simulation) -> dict[str, Array]:
     """Columns of the histories, (n,) each, named with their units ("time [s]")."""
     burnt, engine = simulation.burnt, simulation.engine
     radius, flow = burnt.state("port_radius"), burnt.output("oxidizer_flow")
+    load = held(engine, burnt, burnt.time)
     wall = 2.0 * np.pi * radius * engine.grain_length * engine.fuel_density
     table = {
         "time [s]": burnt.time,
         **{f"{name} [{unit}]": burnt.state(name) for name, unit in STATES.items()},
         **{f"{name} [{unit}]": burnt.output(name) for name, unit in OUTPUTS.items()},
+        "liquid_mass [kg]": load.liquid,
+        "fuel_mass [kg]": load.fuel,
         "chamber_temperature [K]": simulation.chamber_temperature,
         "regression_rate [m/s]": burnt.output("fuel_flow") / wall,
         "oxidizer_flux [kg/m^2/s]": oxidizer_flux(flow, radius),
