@@ -8,6 +8,7 @@ from math import cos, radians, sqrt
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from simulated.engines import maelstrom
 
 from hfanalysis.engine.unsteady import Burn, burn
@@ -220,3 +221,27 @@ def test_the_compiled_air_is_the_atmosphere(altitude: float) -> None:
     assert pressure == pytest.approx(atmosphere.pressure(altitude), rel=1e-12)
     assert density == pytest.approx(atmosphere.density(altitude), rel=1e-12)
     assert sound == pytest.approx(sqrt(1.4 * pressure / density), rel=1e-12)
+
+
+def test_the_way_down_is_that_of_another_solver() -> None:
+    """Drogue, then main, by scipy's LSODA on the report's equations as they stand."""
+    time, top, _ = flight().end
+    state, start, drag = [top, 0.0], time, 0.0
+
+    def rates(_t: float, y: list[float]) -> list[float]:
+        rho = compiled.air(y[0])[1]
+        own = ROCKET.drag_coefficient * ROCKET.frontal_area
+        return [y[1], -gravity(y[0]) - 0.5 * rho * (drag + own) * y[1] * abs(y[1]) / ROCKET.dry_mass]
+
+    for canopy, floor in ((DROGUE, SITE + 457.0), (MAIN, SITE)):
+        drag = canopy.drag_coefficient * canopy.area
+
+        def down(_t: float, y: list[float], floor: float = floor) -> float:
+            return y[0] - floor
+
+        down.terminal = True  # type: ignore[attr-defined]
+        span = (start, start + 3600.0)
+        out = solve_ivp(rates, span, state, method="LSODA", events=down, rtol=1e-10, atol=1e-9)
+        start, state = float(out.t[-1]), [float(out.y[0, -1]), float(out.y[1, -1])]
+    assert descent().landing_time == pytest.approx(start, rel=1e-7)
+    assert descent().landing_speed == pytest.approx(-state[1], rel=1e-7)
