@@ -16,11 +16,14 @@ from tests.cli.shaped import GEOMETRY, MAELSTROM, engine
 
 from hfanalysis.flight import rasp, rocksim
 
+PUBLISHED = MAELSTROM.with_suffix(".published.toml")
+
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What ``--out`` has of it."""
     folder = tmp_path_factory.mktemp("engine")
+    (folder / "engine.published.toml").write_bytes(PUBLISHED.read_bytes())
     assert hfa("simulate", engine(folder), "--out", folder / "out", "--quiet").status == 0
     return folder / "out"
 
@@ -133,11 +136,18 @@ def test_the_page_has_every_curve_of_the_report_and_what_it_printed(written: Pat
     assert not re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', page)  # it asks for nothing
 
 
-def test_what_is_published_of_what_is_no_number_of_it_is_refused(tmp_path: Path, run: Run) -> None:
-    for old, new, said in (
-        ('burn_time = "3.34 s"', 'burn_tme = "3.34 s"', "simulate: unknown key 'burn_tme'; did you mean 'burn_time'"),
-        ('burn_time = "3.34 s"', 'burn_time = "3.34 kg"', "published.simulate.burn_time"),
-    ):
-        status, _, err = run("simulate", engine(tmp_path, "", (old, new)))
-        assert status == 2
-        assert said in err
+@pytest.mark.parametrize(
+    ("new", "said"),
+    [
+        ('burn_tme = "3.34 s"', "simulate: unknown key 'burn_tme'; did you mean 'burn_time'"),
+        ('burn_time = "3.34 kg"', "maelstrom.published.toml, simulate.burn_time"),
+    ],
+)
+def test_what_is_published_of_what_is_no_number_of_it_is_refused(new: str, said: str, tmp_path: Path, run: Run) -> None:
+    for file in (MAELSTROM, PUBLISHED):
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    beside = tmp_path / PUBLISHED.name
+    beside.write_text(beside.read_text(encoding="utf-8").replace('burn_time = "3.34 s"', new), encoding="utf-8")
+    status, _, err = run("simulate", tmp_path / MAELSTROM.name, "--out", tmp_path / "out")
+    assert status == 2
+    assert said in err

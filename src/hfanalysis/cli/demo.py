@@ -14,13 +14,13 @@ PACKAGE = Path(__file__).parents[1]
 REPOSITORY = PACKAGE.parents[1]
 """Of a checkout; of an installed package it is some folder without these files."""
 
-TESTS, ENGINE = ("HF5", "HF4"), "maelstrom.toml"
+TESTS, ENGINE, PUBLISHED = ("HF5", "HF4"), "maelstrom.toml", "maelstrom.published.toml"
 
 NEXT = """\
 {where}: HF5 and HF4 (REPLICAS: generated, not measured) and the report's engine. Next:
   {cd}hfa run HF5 --quick     what can be said at the stand, in seconds (the first command compiles for a minute or so)
   hfa report HF5              the page: processed/HF5/report.html
-  hfa simulate engines/{engine}   the report's engine, and its rocket's flight
+  hfa simulate engines/{engine} --out maelstrom   the report's engine, its rocket's flight, and a page
 """
 
 
@@ -28,7 +28,8 @@ def demo(folder: Path) -> None:
     """Write the examples into ``folder``; what is there already and is the same stays, what differs is refused."""
     source = _data()
     names = [f"raw_tests/{test}/{file}" for test in TESTS for file in ("test.toml", "log.csv")]
-    wanted = {folder / name: source / name for name in (*names, f"engines/{ENGINE}")}
+    names += [f"engines/{ENGINE}", f"engines/{PUBLISHED}"]
+    wanted = {folder / name: source / name for name in names}
     for target, origin in wanted.items():
         if target.exists() and target.read_bytes() != origin.read_bytes():
             raise InputError(f"{target}: is there already, and not as in the examples; expected another folder")

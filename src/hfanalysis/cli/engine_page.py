@@ -9,7 +9,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.flight.histories import groups
 from hfanalysis.products.engines import Designed
 from hfanalysis.record.engine_file import EngineFile
-from hfanalysis.record.sections import PUBLISHED
+from hfanalysis.record.published import TABLES, published
 from hfanalysis.report.engine_page import EngineMaterial, Published, engine_page
 from hfanalysis.simulation import plots, steady_run, study, write
 from hfanalysis.simulation.unsteady_run import Simulation
@@ -34,11 +34,11 @@ def write_page(out: Path, file: EngineFile, found: Simulation) -> None:
 
 
 def _published(file: EngineFile) -> Published:
-    stated = file.published
+    stated = published(file.path)
     if stated is None:
         return Published()
-    texts = {key: {name: str(text) for name, text in getattr(stated, key).items()} for key in PUBLISHED}
-    return Published(stated.source, {key: stated.numbers(key) for key in PUBLISHED}, texts)
+    numbers, texts = {key: stated.numbers(key) for key in TABLES}, {key: stated.texts(key) for key in TABLES}
+    return Published(stated.source, numbers, texts)
 
 
 def _design(file: EngineFile) -> tuple[Designed | str, list[Chart]]:

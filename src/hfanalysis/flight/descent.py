@@ -74,7 +74,7 @@ def _rate(z: float, v: float, table: Array, fixed: Array) -> float:
     _, rho, sound = air_of_day(z, fixed[3], fixed[4], fixed[5])
     canopy = 0.5 * fixed[0] * rho * v * abs(v)
     pull = STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + z)) ** 2
-    return -pull - (canopy + drag_in(rho, sound, v, fixed[1], table)) / fixed[2]
+    return float(-pull - (canopy + drag_in(rho, sound, v, fixed[1], table)) / fixed[2])
 
 
 @compiled(nogil=True)

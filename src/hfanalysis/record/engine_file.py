@@ -25,7 +25,6 @@ from hfanalysis.record.sections import (
     Injector,
     Model,
     NozzleSection,
-    PublishedSection,
     Purge,
     Site,
     Tank,
@@ -60,7 +59,6 @@ class EngineStatements(Section):
     design: DesignSection = DesignSection()
     effects: dict[str, dict[str, Any]] = field(default_factory=dict)
     covariance: CovarianceSection | None = None
-    published: PublishedSection | None = None
 
     def check(self) -> None:
         given = [key for key in TANK_SIZES if getattr(self.tank, key) is not None]

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from typing import Annotated, Any, Literal
 
 from pydantic import PlainValidator
 
-from hfanalysis.products.engines import Designed, Simulated, SimulatedFlight
-from hfanalysis.products.model import Part, units_of
 from hfanalysis.record.schema import (
     ANY,
     NOT_NEGATIVE,
@@ -37,11 +34,9 @@ from hfanalysis.record.schema import (
     between,
     quantity,
     read_quantity,
-    refusing,
     section,
-    unknown_key,
 )
-from hfanalysis.units import Value, parse_as
+from hfanalysis.units import Value
 
 LIQUID_DENSITY_LIMIT = 1250.0
 """[kg/m^3] above any liquid nitrous oxide that can be loaded. Source: saturated liquid at its normal boiling point,
@@ -263,35 +258,6 @@ class DesignSection(Section):
     oxidizer_flow: Annotated[Value, quantity("mass_flow", POSITIVE)] | None = None
     chamber_pressure: Annotated[Value, quantity("pressure", POSITIVE)] | None = None
     target_apogee: Length | None = None
-
-
-PUBLISHED: dict[str, type[Part]] = {"simulate": Simulated, "flight": SimulatedFlight, "design": Designed}
-"""Tables of [published], and the products whose quantities they name."""
-
-
-@section
-class PublishedSection(Section):
-    """[published] of an engine file: numbers that a report, a paper or another program has of it, by the names of
-    simulate.json, of its flight, and of design.json; in ``source``, whose they are."""
-
-    source: Text
-    simulate: dict[str, Any] = field(default_factory=dict)
-    flight: dict[str, Any] = field(default_factory=dict)
-    design: dict[str, Any] = field(default_factory=dict)
-
-    def check(self) -> None:
-        for table in PUBLISHED:
-            self.numbers(table)
-
-    def numbers(self, table: str) -> dict[str, float]:
-        """Of one of the tables, by name [SI]."""
-        units, found = units_of(PUBLISHED[table]), {}
-        for name, stated in getattr(self, table).items():
-            if name not in units:
-                raise Refused(str(unknown_key(name, units)), table)
-            with refusing(table, name):
-                found[name] = parse_as(stated, units[name], "")
-        return found
 
 
 def _circle(diameter: Value) -> Value:
