@@ -94,10 +94,12 @@ def test_holes_load_and_temperature_are_those_of_the_plan(root: Path, base: Base
 
 def test_draws_have_the_errors_of_the_constants_together(plan: PlannedTest, base: Base) -> None:
     none = {name: found.but(drawn=0.0) for name, found in scatter_of([base]).items()}
-    drawn = list(changes(base, planned(plan, base), none, 4000, 3, to_mean([base])[0]))
+    there = planned(plan, base)
+    drawn = list(changes(base, there, none, 4000, 3, to_mean([base])[0]))
     joint = base.found.joint
     std = dict(zip(joint.names, joint.std, strict=True))
-    area, n, ln_a = (np.array(x) for x in zip(*((log(c.area), c.n, log(c.a)) for c in drawn), strict=True))
+    made = [change.of(there.stand) for change in drawn]
+    area, n, ln_a = (np.array(x) for x in zip(*((log(e.feed.area), e.n, log(e.a)) for e in made), strict=True))
     assert area.std() == pytest.approx(std["flow_area"] / base.found.full.engine.feed.area, rel=0.05)
     assert n.std() == pytest.approx(std["n"], rel=0.05)
     place = [joint.names.index(name) for name in ("n", "ln_a")]

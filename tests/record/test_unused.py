@@ -44,6 +44,9 @@ chamber_position = "2.9 m"
 """
 
 
+TOGETHER = '[covariance]\nnames = ["n"]\nstd = [0.01]\ncorrelation = [[1.0]]\n'
+
+
 def keys(section: type, above: str = "") -> Iterator[tuple[str, type, str]]:
     """Every key of a schema that holds no section, dotted, with the section that holds it."""
     hints = get_type_hints(section)
@@ -97,11 +100,11 @@ def by_engines(patch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFacto
     folder = tmp_path_factory.mktemp("engines")
     text = (ROOT / "engines" / "maelstrom.toml").read_text().replace("drag_coefficient = 0.529\nfrontal", "frontal")
     text = text.replace('frontal_area = "19478 mm^2"', 'diameter = "157 mm"') + GEOMETRY
-    (folder / "e.toml").write_text(f'{text}engine_mass = "9 kg"\nengine_center_of_gravity = "2.5 m"\n')
+    (folder / "e.toml").write_text(f'{text}engine_mass = "9 kg"\nengine_center_of_gravity = "2.5 m"\n{TOGETHER}')
     files = [load_engine(path) for path in (folder / "e.toml", ROOT / "engines" / "maelstrom.toml")]
     with watched(patch) as (read, _):
         for file in files:
-            found = simulate(file)
+            found = simulate(file, None, 20)
             write.simulation(folder / "out", found)
             write_page(folder / "out", file, found)
             design(file)

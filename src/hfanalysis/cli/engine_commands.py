@@ -23,12 +23,18 @@ Until = Annotated[
 ]
 
 
+Draws = Annotated[
+    int, typer.Option("--draws", min=0, metavar="N", help="Drawn over what is stated with +/-; 0: no bands.")
+]
+
+
 def _simulate(
     engine: EngineToml,
     as_json: ProductJson = False,
     out: Folder = None,
     quiet: Quiet = False,
     until: Until = None,
+    draws: Draws = 400,
     trust_effects: Trust = False,
 ) -> None:
     """Run the unsteady model of an engine: tank, injector, grain, chamber, nozzle and flight."""
@@ -37,7 +43,7 @@ def _simulate(
         from hfanalysis.effects import beside
 
         ask(beside(engine.absolute()).parent, trust_effects)
-        engines.simulate(engine, out, as_json, quiet, until)
+        engines.simulate(engine, out, as_json, quiet, until, draws)
 
 
 HandOver = Annotated[
@@ -57,6 +63,7 @@ def _design(
     flow: Flows = None,
     length: Lengths = None,
     pressure: Pressures = None,
+    draws: Draws = 200,
     quiet: Quiet = False,
 ) -> None:
     """Steady-state design of an engine; with --out also the parametric study and a .eng file."""
@@ -64,7 +71,7 @@ def _design(
         from hfanalysis.cli import engines
 
         study = {"flow": flow or [], "length": length or [], "pressure": pressure or []}
-        engines.design(engine, out, as_json, quiet, study, hand_over)
+        engines.design(engine, out, as_json, quiet, study, hand_over, draws)
 
 
 def _engine(

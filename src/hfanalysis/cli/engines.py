@@ -20,17 +20,19 @@ NOTHING: Mapping[str, Sequence[str]] = {}
 """Of a study, where nobody says what it is to go through."""
 
 
-def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:
+def simulate(
+    path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None, draws: int = 0
+) -> None:
     """The unsteady model of the engine file at ``path``; what it found to ``out`` where that is given.
 
-    To burn-out, or on through cold gas until ``until`` [s].
+    To burn-out, or on through cold gas until ``until`` [s]; ``draws``: engines drawn over what it states with a +/-.
     """
     file = load_engine(path)
     with watch(file.engine.id, quiet):
         from hfanalysis.cli import engine_page
         from hfanalysis.simulation import unsteady_run, write
 
-        found = unsteady_run.simulate(file, until)
+        found = unsteady_run.simulate(file, until, draws)
         if out is not None:
             with _writing(out):
                 write.simulation(out, found)
@@ -39,10 +41,11 @@ def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: fl
 
 
 def design(path: Path, out: Path | None, as_json: bool, quiet: bool, given: Mapping[str, Sequence[str]] = NOTHING,
-           engine: Path | None = None) -> None:  # fmt: skip
+           engine: Path | None = None, draws: int = 0) -> None:  # fmt: skip
     """The steady design of the engine file at ``path``; with its parametric study to ``out`` where that is given.
 
-    ``given``: flows, lengths and pressures of the study, with their units; ``engine``: the engine file to write.
+    ``given``: flows, lengths and pressures of the study, with their units; ``engine``: the engine file to write;
+    ``draws``: designs drawn over what is stated with a +/-.
     """
     file = load_engine(path)
     with watch(file.engine.id, quiet):
@@ -53,7 +56,7 @@ def design(path: Path, out: Path | None, as_json: bool, quiet: bool, given: Mapp
             raise InputError("--flow, --length, --pressure: are of the study that --out writes; expected --out, too")
         if engine is not None:
             hand_over.refuse_taken(engine)
-        found = steady_run.design(file)
+        found = steady_run.design(file, draws)
         if engine is not None:
             hand_over.write(engine, file, found)
         if out is not None:

@@ -24,10 +24,15 @@ if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.calibration import RegressionBasis
     from hfanalysis.products.campaign import CommonLaw
     from hfanalysis.products.effects import EffectEntry, EffectLibrary
-    from hfanalysis.products.engines import Designed, Simulated
+    from hfanalysis.products.engines import Designed, Simulated, Spread
     from hfanalysis.products.quick import QuickLook
     from hfanalysis.products.reconstruction import Reconstruction
     from hfanalysis.products.validation import Validation
+
+
+MOST_SHARES, LEAST_SHARE = 4, 0.01
+"""Inputs that are named of those whose spread costs, and the share of the variance from which on [-]. Source: by
+choice."""
 
 
 def show(name: str, context: Context) -> None:
@@ -327,6 +332,21 @@ def show_engine(product: Simulated | Designed) -> None:
             for inner, of in part.content.items():
                 if isinstance(of, Part) and of.shown:
                     print_values(console, ordered(of.shown), in_words(inner))
+        if name == "spread" and part is not None:
+            _show_spread(console, part)
+
+
+def _show_spread(console: Console, found: Spread) -> None:
+    """Chances, and whose spread costs most."""
+    refused = f", {found.refused} of which cannot be run" if found.refused else ""
+    console.print(Text(f"bands: {found.draws} engines drawn over what is stated with +/-{refused}"))
+    for one in found.chances:
+        console.print(Text(f"  {one.probability:.0%} that {one.text}"), soft_wrap=soft(console))
+    for name, budget in found.budget.items():
+        shares = [
+            f"{key} {share:.0%}" for key, share in list(budget.shares.items())[:MOST_SHARES] if share >= LEAST_SHARE
+        ]
+        console.print(Text(f"  {in_words(name)} is spread by {', '.join(shares)}"), soft_wrap=soft(console))
 
 
 def show_effects(product: EffectLibrary) -> None:

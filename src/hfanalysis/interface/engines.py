@@ -20,11 +20,14 @@ BETWEEN = "__"
 """Between a section and its key where a dot cannot be."""
 
 
-def simulate(engine: str | Path | Mapping[str, Any], until: float | None = None, **changes: Any) -> xr.Dataset:
+def simulate(
+    engine: str | Path | Mapping[str, Any], until: float | None = None, draws: int = 0, **changes: Any
+) -> xr.Dataset:
     """The unsteady model of an engine: histories over ``time`` [s], and the numbers of ``hfa simulate`` as attributes.
 
     Args:
         engine: an engine file, or what it would state, by section.
+        draws: engines drawn over what is stated with a +/-, for bands about the numbers (the command's: 400).
         until: how long to go on through vapor and cold gas [s]; else to burn-out.
         changes: what is stated otherwise, as ``injector__C_i=0.3`` or ``**{"tank.volume": "18 L"}``.
 
@@ -34,7 +37,7 @@ def simulate(engine: str | Path | Mapping[str, Any], until: float | None = None,
     from hfanalysis.simulation.unsteady_run import simulate as run
     from hfanalysis.simulation.write import histories
 
-    found = run(_stated(engine, changes), until)
+    found = run(_stated(engine, changes), until, draws)
     return _dataset(histories(found), found.product.to_json())
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from hfanalysis.products.beyond import Beyond
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.flight import Check, FlightNumbers, Stability
 from hfanalysis.products.model import Is, Part, Warnings
 from hfanalysis.quantity import Quantity
@@ -54,6 +55,35 @@ class Load(Part):
         return {"oxidizer_to_load": self.oxidizer_mass, "fuel_to_load": self.fuel_mass}
 
 
+class SpreadInput(Part):
+    """Something that is stated with its +/-."""
+
+    name: Annotated[str, Is("key of the engine file, or name in its [covariance]")]
+    value: Annotated[float | None, Is("as stated", "SI")] = None
+    std: Annotated[float, Is("standard deviation", "SI")]
+
+
+class Chance(Part):
+    """How likely it is that a limit is kept."""
+
+    name: Annotated[str, Is("of the limit")]
+    probability: Annotated[float, Is("share of the draws that keep it", "")]
+    limit: Annotated[float, Is("that is to be kept", "as unit says")]
+    unit: Annotated[str, Is("of the limit")]
+    text: Annotated[str, Is("what is kept, in words")]
+
+
+class Spread(Part):
+    """What is stated with +/- makes of the numbers: engines drawn over it."""
+
+    draws: Annotated[int, Is("engines drawn", "")]
+    refused: Annotated[int, Is("of them, that cannot be run", "")]
+    seed: Annotated[int, Is("of the draws", "")]
+    inputs: Annotated[tuple[SpreadInput, ...], Is("what was drawn")]
+    chances: Annotated[tuple[Chance, ...], Is("that limits are kept")] = ()
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
+
+
 class Simulated(EngineHead):
     """The unsteady engine of an engine file, and the flight of its rocket."""
 
@@ -77,6 +107,7 @@ class Simulated(EngineHead):
     dip_tube_length: Annotated[Quantity, Is("of its dip tube", "m")]
     tank_volume: Annotated[Quantity, Is("of the tank", "m^3")]
     flight: Annotated[SimulatedFlight, Is("of its rocket")]
+    spread: Annotated[Spread | None, Is("of what the bands are made, where the file states +/-")] = None
     propellant_for_target_apogee: Annotated[Load | None, Is("load for [design] target_apogee")] = None
     beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
@@ -118,6 +149,7 @@ class Designed(EngineHead):
     pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
     apogee: Annotated[Quantity, Is("of its rocket, above ground", "m")]
     optimum: Annotated[Optimum, Is("the best mixture")]
+    spread: Annotated[Spread | None, Is("of what the bands are made, where the file states +/-")] = None
     beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
     provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]

@@ -186,7 +186,7 @@ def load_definition(path: Path) -> TestDefinition:
     """The test.toml at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
     stated = validate(Statements, {"schema": None, **content}, path)
-    idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS, "test.toml")
+    idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS.__contains__, "test.toml")
     digest, warnings = hashlib.sha256(raw).hexdigest(), (*_odd_names(stated.channels), *idle)
     definition = TestDefinition(**vars(stated), path=path, sha256=digest, warnings=warnings)
     _check_folder(definition)

@@ -29,7 +29,7 @@ from hfanalysis.record.sections import (
     Site,
     Tank,
 )
-from hfanalysis.record.unused import OF_ENGINES, unused
+from hfanalysis.record.unused import LOOSE_OF_ENGINES, OF_ENGINES, unused
 
 T = TypeVar("T")
 
@@ -88,7 +88,7 @@ def load_engine(path: Path) -> EngineFile:
 def engine_of(content: Mapping[str, Any], path: Path, raw: bytes) -> EngineFile:
     """The same of what such a file states, by section; ``raw`` [bytes] of the file at ``path`` that it came from."""
     stated = validate(EngineStatements, {"schema": None, **content}, path)
-    idle = unused(stated, OF_ENGINES, (), str(path))
+    idle = unused(stated, OF_ENGINES, lambda name: name not in LOOSE_OF_ENGINES, str(path))
     return EngineFile(**vars(stated), path=path, sha256=hashlib.sha256(raw).hexdigest(), warnings=idle)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import fields
 from typing import Any
 
@@ -10,12 +10,23 @@ from hfanalysis.record.schema import Section
 from hfanalysis.units import Value
 
 OF_ENGINES = frozenset({
-    "covariance.names", "covariance.std", "covariance.correlation",
     "model.nozzle", "purge.cracking_pressure", "site.launch_temperature", "site.launch_pressure",
     "rocket.drag_uncertainty", "rocket.shot_to_shot",
 })  # fmt: skip
 """Of engine files. Evidence: test_unused.py: ``hfa simulate`` and ``hfa design`` read every other key of the schema,
 and none of these."""
+
+LOOSE_OF_ENGINES = frozenset({
+    "design.oxidizer_flow", "design.chamber_pressure", "design.target_apogee", "rocket.wind_speed",
+    "rocket.casing_diameter", "rocket.casing_length",
+    *(f"rocket.geometry.{key}" for key in (
+        "nose.length", "body.length", "fins.root", "fins.tip", "fins.span", "fins.sweep", "fins.position",
+        "fins.thickness", "tail.length", "tail.diameter", "tail.position", "structure.mass",
+        "structure.center_of_gravity", "tank_position", "chamber_position", "engine_mass",
+        "engine_center_of_gravity", "roughness",
+    )),
+})  # fmt: skip
+"""Values of engine files whose +/- goes into no band: what is asked for, and what the margin alone is made of."""
 
 OF_TESTS = frozenset({"tank.dip_tube.outer_diameter", "tank.dip_tube.inner_diameter"})
 """Of test.toml. Evidence: test_unused.py: the stages read every other key of the schema, and none of these."""
@@ -30,17 +41,17 @@ SPREADS_OF_TESTS = frozenset({
 test_unused.py."""
 
 
-def unused(stated: Section, keys: Container[str], spreads: Container[str], where: str) -> tuple[str, ...]:
+def unused(stated: Section, keys: Container[str], used: Callable[[str], bool], where: str) -> tuple[str, ...]:
     """One line that names what a file states and nothing uses, or none; ``where`` names the file.
 
-    ``keys``: those that nothing uses; ``spreads``: those whose +/- is used.
+    ``keys``: those that nothing uses; ``used``: whether the +/- of a key is.
     """
     given = list(_given(stated, ""))
     idle = [_in_words(name) for name, _ in given if name in keys]
     loose = [
         _in_words(name)
         for name, value in given
-        if isinstance(value, Value) and value.std is not None and not (name in spreads or name in keys)
+        if isinstance(value, Value) and value.std is not None and not (used(name) or name in keys)
     ]
     said = [*([", ".join(idle)] if idle else []), *([f"the +/- of {', '.join(loose)}"] if loose else [])]
     return (f"{where}: accepted, but not used yet: {'; '.join(said)}",) if said else ()

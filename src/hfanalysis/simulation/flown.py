@@ -22,6 +22,7 @@ from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.record.schema import changed
 from hfanalysis.record.sections import Tank
 from hfanalysis.rocket.balance import Held
+from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.units import Value
 
@@ -78,20 +79,32 @@ def quantities(found: Flown | str) -> dict[str, Quantity]:
     """Of the flight, each with its unit [m, s, m/s, m/s^2]; each that cannot be had says why."""
     if isinstance(found, str):
         return summary.absent(found)
-    launch = found.launch
-    return summary.quantities(launch.vehicle, found.ascent, launch.rail_length, found.canopies)
+    return numbers_of(found.launch, found.ascent, found.canopies)
 
 
-def to_ground(file: EngineFile, engine: Engine, burnt: Burn, tank: TankBuilt) -> Flown | str:
-    """The flight of the file's rocket, its margin in winds where its geometry is stated; or why it cannot fly."""
-    vehicle = build.vehicle(file)
+def numbers_of(launch: Launch, up: Ascent, canopies: tuple[Parachute, Parachute] | str) -> dict[str, Quantity]:
+    """Of a flight that took place."""
+    return summary.quantities(launch.vehicle, up, launch.rail_length, canopies)
+
+
+def launched(file: EngineFile, engine: Engine, burnt: Burn) -> tuple[Launch, Ascent] | str:
+    """The file's rocket on its way up, or why it cannot fly."""
+    vehicle = build.vehicle(file) if engine.vehicle is None else engine.vehicle
     if not isinstance(vehicle, Vehicle):
         return vehicle
     launch = Launch(curve_of(engine, burnt), vehicle, file.rocket.guided_length if file.rocket else None)
     try:
-        up = ascent.ascend(launch.curve, vehicle, launch.rail_length)
+        return launch, ascent.ascend(launch.curve, vehicle, launch.rail_length)
     except ValueError as error:
         return str(error)
+
+
+def to_ground(file: EngineFile, engine: Engine, burnt: Burn, tank: TankBuilt) -> Flown | str:
+    """The flight of the file's rocket, its margin in winds where its geometry is stated; or why it cannot fly."""
+    found = launched(file, engine, burnt)
+    if isinstance(found, str):
+        return found
+    launch, up = found
     return Flown(launch, up, build.parachutes(file), _in_winds(file, engine, burnt, tank, launch, up))
 
 

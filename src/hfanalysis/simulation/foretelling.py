@@ -15,7 +15,6 @@ from hfanalysis.assembly.calibrated import exponent, loss_factor
 from hfanalysis.engine.batch import burn_many
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
-from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.inference.full_run import LONGEST_BURN
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.prediction import Scatter
@@ -23,6 +22,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs, engine_of
 from hfanalysis.record.planned import PlannedTest
 from hfanalysis.simulation import flown
+from hfanalysis.simulation.errors import off_by
 from hfanalysis.simulation.of_test import OfTest
 from hfanalysis.units import Value
 from hfanalysis.validate.model_errors import lower_factor
@@ -138,32 +138,30 @@ def _logs(bases: Sequence[Base]) -> dict[str, list[float]]:
 
 @dataclass(frozen=True)
 class Change:
-    """How one drawn engine differs: factors [-] of area, a, throat and fuel; additions to the others [SI]."""
+    """How one drawn engine differs: errors of the constants by name [SI], as of the engine ``measured_on``; factors [-]
+    of area, a, throat and fuel; additions to oxidizer [kg] and temperature [K]; effects."""
 
+    off: Mapping[str, float]
+    measured_on: Engine
     area: float
     a: float
     throat: float
     fuel: float
-    loss: float
-    m: float
-    n: float
     oxidizer: float
     temperature: float
     effects: tuple[Active, ...]
 
     def of(self, engine: Engine) -> Engine:
         """An engine so changed."""
-        feed, m = engine.feed, engine.polytropic_exponent
+        made = off_by(engine, self.off, self.measured_on)
         return replace(
-            engine,
-            feed=replace(feed, area=feed.area * self.area, loss_factor=max(feed.loss_factor + self.loss, 0.0)),
-            polytropic_exponent=None if m is None else m + self.m,
-            a=engine.a * self.a,
-            n=engine.n + self.n,
-            throat_area=engine.throat_area * self.throat,
-            fuel_mass=engine.fuel_mass * self.fuel,
-            oxidizer_mass=engine.oxidizer_mass + self.oxidizer,
-            temperature=engine.temperature + self.temperature,
+            made,
+            feed=replace(made.feed, area=made.feed.area * self.area),
+            a=made.a * self.a,
+            throat_area=made.throat_area * self.throat,
+            fuel_mass=made.fuel_mass * self.fuel,
+            oxidizer_mass=made.oxidizer_mass + self.oxidizer,
+            temperature=made.temperature + self.temperature,
             effects=self.effects,
         )
 
@@ -185,19 +183,20 @@ def changes(
     factor = lower_factor(correlation) * np.array(joint.std)[:, None]
     for _ in range(count):
         off = dict(zip(joint.names, factor @ rng.standard_normal(len(joint.names)), strict=True))
-        ln_a = off.get("ln_a", off.get("a", 0.0) / engine.a)
+        off.pop("oxidizer_mass", None)  # of the test that was fired; the plan's load is stated
         own_throat = _relative(file.nozzle.throat_radius) * rng.standard_normal()
+        if own_throat:
+            off.pop("throat_area", None)
         yield Change(
-            area=exp(off.get("flow_area", 0.0) / engine.feed.area + shift["C_i"] + _between(scatter["C_i"], rng)),
-            a=exp(ln_a + shift[RATE] + _between(scatter[RATE], rng)),
-            throat=exp(2.0 * own_throat or off.get("throat_area", 0.0) / engine.throat_area),
+            off=off,
+            measured_on=engine,
+            area=exp(shift["C_i"] + _between(scatter["C_i"], rng)),
+            a=exp(shift[RATE] + _between(scatter[RATE], rng)),
+            throat=exp(2.0 * own_throat),
             fuel=exp(_relative(file.grain.mass) * rng.standard_normal()),
-            loss=off.get("K_loss", 0.0),
-            m=off.get("m", 0.0),
-            n=off.get("n", 0.0),
             oxidizer=_std(file.tank.oxidizer_mass) * rng.standard_normal(),
             temperature=_std(file.tank.temperature) * rng.standard_normal(),
-            effects=_effects(base.found.adopted, plan.stand.effects, rng),
+            effects=base.found.adopted.drawn(plan.stand.effects, rng),
         )
 
 
@@ -212,19 +211,6 @@ def _std(value: Value | None) -> float:
 
 def _relative(value: Value | None) -> float:
     return 0.0 if value is None or value.std is None else value.std / value.value
-
-
-def _effects(adopted: Adopted, acting: Sequence[Active], rng: np.random.Generator) -> tuple[Active, ...]:
-    """Effects with their parameters off by what is stated of them, within their bounds."""
-    return tuple(_moved(active, (adopted.stated or {}).get(active.effect.name, {}), rng) for active in acting)
-
-
-def _moved(active: Active, stated: Mapping[str, Value], rng: np.random.Generator) -> Active:
-    values = [
-        float(np.clip(value + _std(stated.get(p.name)) * rng.standard_normal(), p.low, p.high))
-        for p, value in zip(active.effect.parameters, active.values, strict=True)
-    ]
-    return Active(active.effect, tuple(values))
 
 
 def outcomes(stands: Sequence[Engine], flying: Sequence[Engine], rail: float | None) -> Array:

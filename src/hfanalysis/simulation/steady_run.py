@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hfanalysis.assembly import engine as build
 from hfanalysis.engine.grain import Grain
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
-from hfanalysis.products.engines import Designed, Optimum
+from hfanalysis.flight.summary import FlightSpread
+from hfanalysis.products.engines import Designed, Optimum, Spread
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulation import heading, sized, warned
+from hfanalysis.simulation import heading, sized, spread, warned
 from hfanalysis.steady_design import steady
 from hfanalysis.steady_design.steady import Requirement, SteadyEngine
 from hfanalysis.thermo.combustion import restart
 
 COMMAND = "hfa design"
+
+ASKED = ("fuel_mass", "thrust", "specific_impulse")
+"""Numbers of which it is told whose spread costs most."""
 
 UNITS = {
     "burn_time": "s",
@@ -54,8 +59,10 @@ class DesignRun:
     product: Designed
 
 
-def design(file: EngineFile) -> DesignRun:
+def design(file: EngineFile, draws: int = 0) -> DesignRun:
     """The steady-state design of an engine file.
+
+    ``draws``: designs solved anew over what the file states with a +/-, for bands about the numbers.
 
     Raises :class:`InputError` where the file lacks what the model needs, or no engine meets what it asks for.
     """
@@ -69,23 +76,51 @@ def design(file: EngineFile) -> DesignRun:
         heard = warned.of_design(needs, task.requirement, port, engine, best)
     except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.where('design')}: {error}") from None
+    found = _numbers(needs, task, engine)
+    known = _bands(file, draws) if draws and spread.is_loose(file) else None
     product = Designed.from_json(
         {
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
             "fuel_mass_from": "grain.mass" if task.target is None else "design.target_apogee",
-            **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
-            "port_radius": Quantity(port, "m"),
-            "grain_length": Quantity(task.grain.length, "m"),
-            **sized.injector(needs, task.requirement),
-            **sized.tank(needs, engine.oxidizer_mass),
-            **_flown(file, task, engine),
+            **(found if known is None else spread.about(found, known[0])),
             "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
+            **({} if known is None else {"spread": known[1]}),
             "beyond": heard,
             "warnings": file.warnings,
             "provenance": heading.provenance(file),
         }
     )
     return DesignRun(task, engine, product)
+
+
+def _numbers(needs: Needs, task: Task, engine: SteadyEngine) -> dict[str, Quantity]:
+    return {
+        **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
+        "port_radius": Quantity(task.grain.port_radius(engine.fuel_mass), "m"),
+        "grain_length": Quantity(task.grain.length, "m"),
+        **sized.injector(needs, task.requirement),
+        **sized.tank(needs, engine.oxidizer_mass),
+        **_flown(needs.file, task, engine),
+    }
+
+
+def _bands(file: EngineFile, count: int) -> tuple[Mapping[str, FlightSpread | str], Spread]:
+    """Deviations and intervals of the design's numbers by name, and what they are made of."""
+    found, rows, there = spread.draw(file, count, spread.SEED), [], []
+    for i, one in enumerate(found.files):
+        needs = Needs(one.file, COMMAND)
+        try:
+            task = task_of(needs)
+            row = spread.plain(_numbers(needs, task, solve(task)))
+        except (InputError, ValueError, ArithmeticError):
+            continue
+        rows.append(row)
+        there.append(i)
+    columns = spread.table(rows, there, count)
+    made_of = spread.budgets(columns, ASKED, found)
+    refused = count - len(rows)
+    about = Spread(draws=count, refused=refused, seed=spread.SEED, inputs=found.stated, budget=made_of)
+    return spread.spreads(columns), about
 
 
 def task_of(needs: Needs) -> Task:

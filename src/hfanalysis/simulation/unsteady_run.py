@@ -12,24 +12,22 @@ from hfanalysis.assembly import engine as build
 from hfanalysis.assembly.tank import TankBuilt
 from hfanalysis.effects import library_of
 from hfanalysis.engine import closure, unsteady
-from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import stability
 from hfanalysis.flight.histories import Flown
 from hfanalysis.flight.stability import StabilityRuns
-from hfanalysis.inference.adopted.effects import effects_in
+from hfanalysis.inference.adopted.effects import Adopted, effects_in
 from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
-from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
-from hfanalysis.simulation import flown, heading, propellant, sized, warned
+from hfanalysis.rocket.vehicle import Vehicle
+from hfanalysis.simulation import flown, heading, numbers, propellant, sized, spread, warned
 
 COMMAND = "hfa simulate"
 
 LONGEST_RUN = 600.0
 """Longest run that can be asked for [s]: no stand runs on for longer."""
-
 
 EVEN = 1501
 """Times of a chart. Source: by choice: 2 ms of a burn of three seconds."""
@@ -54,25 +52,35 @@ class Simulation:
         return replace(self, burnt=burnt, chamber_temperature=burnt.chamber_temperature())
 
 
-def simulate(file: EngineFile, until: float | None = None) -> Simulation:
+def simulate(file: EngineFile, until: float | None = None, draws: int = 0) -> Simulation:
     """Run the unsteady model of an engine file, to burn-out or on through cold gas ``until`` [s].
+
+    ``draws``: engines drawn over what the file states with a +/-, for bands about its numbers.
 
     Raises :class:`InputError` where the file lacks what the model needs, or states an engine that cannot be run.
     """
     needs = Needs(file, COMMAND)
     tank = build.tank(needs)
-    engine = replace(build.engine(needs, tank), effects=_effects(file))
+    adopted = _effects(file)
+    engine = replace(build.engine(needs, tank), effects=adopted.acting)
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
     found = flown.to_ground(file, engine, burnt, tank)
     flight = _flight(file, engine, burnt, found)
+    of_engine, of_rocket = numbers.of_burn(engine, burnt, hot), numbers.loaded(file, engine, burnt)
+    known = spread.bands(file, adopted, COMMAND, draws) if draws and until is None and spread.is_loose(file) else None
+    if known is not None:
+        of_engine, of_rocket = (spread.about(of, known.engine) for of in (of_engine, of_rocket))
+        flight |= spread.about(numbers.of(flight), known.flight)
     product = Simulated.from_json(
         {
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
-            **_engine(engine, burnt, hot),
-            **_loaded(file, engine, burnt),
+            **of_engine,
+            **_implied(burnt),
+            **of_rocket,
             **sized.of_tank(tank),
             "flight": flight,
+            **({} if known is None else {"spread": known.product}),
             **_propellant(needs, engine),
             "beyond": (*warned.of_burn(engine, burnt, flight), *warned.of_stability(_stable(found))),
             "warnings": [*file.warnings, *_warnings(burnt)],
@@ -82,11 +90,11 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     return Simulation(file, tank, engine, burnt, hot, found, product)
 
 
-def _effects(file: EngineFile) -> tuple[Active, ...]:
+def _effects(file: EngineFile) -> Adopted:
     """What [effects] states beside the base model, a team's own among them; InputError for what cannot be."""
     if not file.effects:
-        return ()
-    return effects_in(file.effects, file.path, library_of(file.path, file.effects)).acting
+        return Adopted()
+    return effects_in(file.effects, file.path, library_of(file.path, file.effects))
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:
@@ -97,26 +105,6 @@ def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:
         return unsteady.burn(engine) if until is None else unsteady.burn(engine, until, run_on=True)
     except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.path}: {error}") from None
-
-
-def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
-    impulse = float(burnt.state("impulse")[-1])
-    loaded = engine.oxidizer_mass + engine.fuel_mass
-    burn_time = _burn_time(burnt)
-    known = burn_time.value is not None
-    dry = "the liquid does not run out within the burn"
-    return {
-        "burn_time": burn_time,
-        "total_impulse": Quantity(impulse, "N s"),
-        "specific_impulse": Quantity(impulse / (STANDARD_GRAVITY * loaded), "s"),
-        "peak_chamber_temperature": Quantity(float(hot.max()), "K"),
-        "peak_chamber_pressure": Quantity(float(burnt.output("chamber_pressure").max()), "Pa"),
-        "peak_thrust": Quantity(peak_thrust(burnt), "N"),
-        "average_thrust": Quantity(impulse / burnt.burn_time, "N") if known else burn_time,
-        "liquid_depletion_time": Quantity.absent(dry) if burnt.liquid_out is None else Quantity(burnt.liquid_out, "s"),
-        "residual_oxidizer_mass": Quantity(float(burnt.state("tank_mass")[-1]), "kg"),
-        **_implied(burnt),
-    }
 
 
 def _implied(burnt: Burn) -> dict[str, Quantity]:
@@ -130,31 +118,11 @@ def _implied(burnt: Burn) -> dict[str, Quantity]:
     }
 
 
-def _burn_time(burnt: Burn) -> Quantity:
-    if not burnt.fuel_out:
-        return Quantity.absent(f"the fuel is not gone after {burnt.burn_time:.0f} s")
-    return Quantity(burnt.burn_time, "s")
-
-
-def peak_thrust(burnt: Burn) -> float:
-    """Highest thrust [N]."""
-    return float(burnt.output("thrust").max())
-
-
-def _loaded(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:
-    """The loaded rocket on its pad."""
-    if file.rocket is None:
-        return {name: Quantity.absent("no [rocket] is given") for name in ("wet_mass", "pad_thrust_to_weight")}
-    mass = file.rocket.dry_mass.value + engine.oxidizer_mass + engine.fuel_mass
-    weight = mass * gravity(build.launch_altitude(file))
-    return {"wet_mass": Quantity(mass, "kg"), "pad_thrust_to_weight": Quantity(peak_thrust(burnt) / weight)}
-
-
 def _flight(file: EngineFile, engine: Engine, burnt: Burn, found: Flown | str) -> dict[str, Any]:
     """As flight.json."""
     stable = _stable(found)
     margin = {"checks": stability.checks(stable), "stability": stability.product(stable)}
-    return flown.quantities(found) | _loaded(file, engine, burnt) | margin
+    return flown.quantities(found) | numbers.loaded(file, engine, burnt) | margin
 
 
 def _stable(found: Flown | str) -> StabilityRuns | str:
@@ -170,4 +138,6 @@ def _propellant(needs: Needs, engine: Engine) -> dict[str, dict[str, Quantity]]:
 
 
 def _warnings(burnt: Burn) -> list[str]:
-    return [] if burnt.fuel_out else [f"{_burn_time(burnt).reason}; impulse and residual are those until then"]
+    return (
+        [] if burnt.fuel_out else [f"{numbers.burn_time_of(burnt).reason}; impulse and residual are those until then"]
+    )

@@ -52,15 +52,27 @@ def of_stability(stable: StabilityRuns | str) -> Cautions:
     return cautions.static_margin(worst.least, worst.largest, (LOW, HIGH), worst.wind)
 
 
-def _of_burn(engine: Engine, burnt: Burn, flight: Mapping[str, Quantity]) -> Iterator[Beyond]:
+def _windows(burnt: Burn) -> tuple[Mask, Mask]:
+    """Where the chamber has come to its pressure and burns, and where liquid flows as well, (n,) each."""
     chamber = burnt.output("chamber_pressure")
     before_end = burnt.time <= burnt.burn_time
     lit = np.arange(chamber.size) >= int(np.argmax(chamber >= RISEN * chamber[before_end].max()))
     burning = lit & before_end
-    liquid = burning if burnt.liquid_out is None else burning & (burnt.time <= burnt.liquid_out)
-    drop = burnt.output("run_pressure") - chamber
+    return burning, burning if burnt.liquid_out is None else burning & (burnt.time <= burnt.liquid_out)
+
+
+def lowest_stiffness(burnt: Burn) -> float:
+    """Lowest pressure drop of the injector over the chamber's pressure while liquid flows [-]; NaN: none does."""
+    _, liquid = _windows(burnt)
+    chamber = burnt.output("chamber_pressure")
+    return float(((burnt.output("run_pressure") - chamber) / chamber)[liquid].min()) if liquid.any() else float("nan")
+
+
+def _of_burn(engine: Engine, burnt: Burn, flight: Mapping[str, Quantity]) -> Iterator[Beyond]:
+    burning, liquid = _windows(burnt)
     if liquid.any():
-        yield from cautions.stiffness(float((drop / chamber)[liquid].min()))
+        yield from cautions.stiffness(lowest_stiffness(burnt))
+        drop = burnt.output("run_pressure") - burnt.output("chamber_pressure")
         yield from cautions.reversed_flow(float(drop[liquid].min()))
         yield from _of_nozzle(engine, burnt, liquid)
     flux = oxidizer_flux(burnt.output("oxidizer_flow"), burnt.state("port_radius"))

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.errors import InputError
@@ -46,6 +48,10 @@ class Adopted:
         """The effects that are not of strength 0, with which a model is the base model."""
         return tuple(active for active in self.effects if not active.idle)
 
+    def drawn(self, acting: Sequence[Active], rng: np.random.Generator) -> tuple[Active, ...]:
+        """Effects that act, their parameters off by what is stated of them, within their bounds."""
+        return tuple(_moved(active, (self.stated or {}).get(active.effect.name, {}), rng) for active in acting)
+
     def product(self) -> tuple[AdoptedEffect, ...]:
         """As products have it: name, file, and every parameter as a quantity in its own unit, with its standard
         deviation where stated."""
@@ -58,6 +64,15 @@ class Adopted:
             p.name: Quantity(value, p.unit, stated[p.name].std if p.name in stated else None)
             for p, value in zip(active.effect.parameters, active.values, strict=True)
         }
+
+
+def _moved(active: Active, stated: Mapping[str, Value], rng: np.random.Generator) -> Active:
+    off = {name: value.std or 0.0 for name, value in stated.items()}
+    values = [
+        float(np.clip(value + off.get(p.name, 0.0) * rng.standard_normal(), p.low, p.high))
+        for p, value in zip(active.effect.parameters, active.values, strict=True)
+    ]
+    return Active(active.effect, tuple(values))
 
 
 def read_adopted(root: Path, definition: Any) -> Adopted:
