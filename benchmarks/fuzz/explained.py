@@ -18,6 +18,9 @@ measured they are known no better. A burn that was timed is known to a tenth."""
 GAIN = 0.06
 """Part by which a gauge or cell may read high or low unseen [-]. Source: thrust coefficients of real nozzles are 0.92
 to 1 of the ideal one, those of c* 0.7 to 1."""
+LINE = 0.8
+"""Share of the truth down to which a run-line gauge may read unseen [-]: as behind a line that loses more, which is not
+measured otherwise."""
 DRIFT = 0.1
 """Part of its range by which a gauge of tank or line may drift over the log unseen [-]; of that, a third by the end of
 the liquid. Source: what mass and energy of a blowdown tell of its load, 5 % (calibrate/rest.py)."""
@@ -27,6 +30,7 @@ REASONS = {
     "the burn was timed no better",
     "gain": "a gauge that reads up to 6 % too much or too little, more than its stated accuracy: as much is open in "
     "the nozzle's and the combustion's efficiencies",
+    "line": "a run-line gauge that reads up to a fifth too little: as behind a feed line that loses more",
     "drift": "a gauge of tank or line that drifts by up to a tenth of its range over the log: it ends at a "
     "pressure that nothing else tells",
     "holes": "another area of the injector's holes, or another number of them, was stated: the log tells C_i times it "
@@ -60,7 +64,10 @@ def _by_size(kind: str, case: Case) -> str:
     name = next(name for name in log.channels if not np.array_equal(log.channels[name], base.channels[name], True))
     now, before = log.channels[name], base.channels[name]
     if kind == "scale":
-        return REASONS["gain"] if abs(_median(now / before) - 1.0) < GAIN else ""
+        factor = _median(now / before)
+        if name == "p_run" and LINE < factor < 1.0:
+            return REASONS["line"]
+        return REASONS["gain"] if abs(factor - 1.0) < GAIN else ""
     small = float(np.nanmax(np.abs(now - before))) < DRIFT * float(np.nanmax(np.abs(before)))
     return REASONS["drift"] if small and name in ("p_tank", "p_run", "p_purge") else ""
 

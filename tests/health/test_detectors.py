@@ -64,6 +64,7 @@ CASES = {
     "clipped": ("railed", "p_chamber", lambda t, v: np.minimum(v, 12.0)),
     "clipped, with spikes": ("railed", "thrust", lambda t, v: np.minimum(v, np.where(np.arange(v.size) % 211, 900, v))),
     "cut at its top before the firing": ("railed", "p_tank", lambda t, v: np.minimum(v, v[t < 0.0].min() - 0.3)),
+    "a converter of six bits": ("coarse", "p_tank", lambda t, v: 4.0 * np.round(v / 4.0)),
     "held up": ("railed", "p_tank", lambda t, v: np.maximum(v, 44.0)),
     "cell dies": ("noise", "thrust", lambda t, v: np.where(t < 2.0, v, WILD)),
     "code": ("dropout", "p_chamber", between(2.0, 3.0, -10.0)),

@@ -58,3 +58,5 @@ def test_a_flow_that_the_tanks_model_does_not_reach_is_refused_with_the_instant(
     whole(time, flow, 6.0)
     with pytest.raises(AbsentError, match=r"beyond 6\.50 s, and the burn goes on to 8\.00 s"):
         whole(time, flow, 8.0)
+    with pytest.raises(AbsentError, match="no samples before the burn's end"):
+        whole(time[:0], flow[:0], 8.0)

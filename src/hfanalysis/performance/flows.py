@@ -104,6 +104,8 @@ def oxidizer_flow(
 def whole(time: Array, flow: Array, end: float) -> None:
     """Raise AbsentError where a flow (n,) [kg/s] at ``time`` (n,) [s] is not known from the opening to the burn's
     ``end`` [s]."""
+    if time.size < 2:
+        raise AbsentError(f"the log has no samples before the burn's end at {end:.2f} s")
     lost = np.flatnonzero(~np.isfinite(flow) & (time >= 0.0) & (time <= end))
     if lost.size:
         raise AbsentError(

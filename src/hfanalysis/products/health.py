@@ -20,6 +20,7 @@ KINDS = {
     "dead": "dead",
     "railed": "at its rail",
     "stuck": "stuck",
+    "coarse": "resolution too coarse",
     "noise": "noise only",
     "open": "open or broken thermocouple",
     "dropout": "drop-outs coded as numbers",

@@ -25,6 +25,9 @@ from hfanalysis.wording.numbers import MINUS, fixed, in_words, ordered
 KEY_NUMBERS = ("total_impulse", "burn_time", "peak_thrust", "peak_chamber_pressure", "specific_impulse")
 """What is asked for first; the apogee comes after them."""
 
+LEAST_SHARE = 0.005
+"""Share of a variance from which on an input is listed [-]. Source: by choice: it reads 1 %."""
+
 _HEIGHT = 250.0
 """Of a chart of the first screen [px]."""
 
@@ -123,6 +126,7 @@ def _sections(material: EngineMaterial) -> Iterator[Laid]:
         ("glance", "At a glance", _glance, False),
         ("beyond", "What an engineer would warn of", _warnings, False),
         ("numbers", "Numbers", _numbers, False),
+        ("spread", "How sure they are", _spread, False),
         ("burn", "The burn over time", _burn, False),
         ("flight", "The flight", _flight, False),
         ("design", "The steady-state design", _design, True),
@@ -173,12 +177,35 @@ def _numbers(material: EngineMaterial) -> Iterator[Block]:
 def _table(title: str, found: Mapping[str, Quantity], published: Published, key: str) -> Markup:
     """The quantities, beside what was published of them."""
     known, texts = published.numbers.get(key, {}), published.texts.get(key, {})
-    beside = (">published", ">difference") if known else ()
+    banded = any(of.std for of in found.values())
+    heads = [*([">95 % interval"] if banded else []), *([">published", ">difference"] if known else [])]
     rows = []
     for name, of in ordered(found).items():
+        band = (html.interval(of, name),) if banded else ()
         printed = (texts.get(name, ""), _difference(of.value, known.get(name))) if known else ()
-        rows.append((in_words(name), html.value(of, name), *printed, html.remark(of, ())))
-    return html.table(title, title, ("quantity", ">value", *beside, "remark"), rows)
+        rows.append((in_words(name), html.value(of, name), *band, *printed, html.remark(of, ())))
+    return html.table(title, title, ("quantity", ">value", *heads, "remark"), rows)
+
+
+def _spread(material: EngineMaterial) -> Iterator[Block]:
+    """Chances that limits are kept, and whose spread costs most; nothing where nothing is stated with a +/-."""
+    found = material.product.spread
+    if found is None:
+        return
+    refused = f" {found.refused} of them cannot be run." if found.refused else ""
+    yield html.paragraph(f"From {found.draws} engines drawn over what the file states with a +/-.{refused}")
+    yield html.bullets((f"{one.probability:.0%} that {one.text}" for one in found.chances), "plain")
+    names = list(dict.fromkeys(key for budget in found.budget.values() for key in budget.shares))
+    rows = [
+        (key, *(f"{budget.shares.get(key, 0.0):.0%}" for budget in found.budget.values()))
+        for key in names
+        if max(budget.shares.get(key, 0.0) for budget in found.budget.values()) >= LEAST_SHARE
+    ]
+    rows.append(("beyond straight lines", *(f"{budget.non_linear:.0%}" for budget in found.budget.values())))
+    columns = ("input", *(f">{in_words(name)}" for name in found.budget))
+    if found.budget:
+        caption = "Share of the variance that each input makes."
+        yield html.table("How sure they are", caption, columns, rows)
 
 
 def _difference(found: float | None, known: float | None) -> str:

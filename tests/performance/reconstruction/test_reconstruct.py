@@ -151,3 +151,13 @@ def test_it_is_written_with_its_bands(tmp_path: Any) -> None:
             assert (low <= value).all()
             assert (value <= high).all()
             assert group[name].attrs["units"]
+
+
+def test_a_gauge_that_reads_no_pressure_within_the_burn_is_said() -> None:
+    made = burn(LEAN, 5).test
+    time = made.time
+    dead = np.where((time > 2.0) & (time < 3.0), -2e5, made.measured["p_chamber"])
+    changed: Any = SimpleNamespace(**{**vars(made), "measured": {**made.measured, "p_chamber": dead}})
+    found = reconstruct(changed)
+    assert found.product.variant is None
+    assert "reads no pressure" in str(found.product.reason)

@@ -78,6 +78,9 @@ def gather(firing: Firing, theory: Theory) -> Gathered:
     start, end = _window(firing, read)
     time = np.linspace(start, end, int(np.clip((end - start) / STEP, 10, MOST)) + 1)
     gauge, oxidizer = (np.interp(time, firing.time, x) for x in (read, smooth(firing.oxidizer)))
+    bad = np.flatnonzero(~(gauge > 0.0))
+    if bad.size:
+        raise AbsentError(f"p_chamber reads no pressure at {time[bad[0]]:.2f} s, within the burn")
     fuel = fuel_burnt(firing, start, end)
     port = _port(firing, time, fuel.total)
     factor, low = _tap(firing, theory, port, gauge)

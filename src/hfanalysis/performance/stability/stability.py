@@ -77,6 +77,10 @@ class Stretch:
         return abs(self.found.mean)
 
 
+TINY = 1e-12
+"""Share of its spread [-] below which a variance is none. Source: double precision."""
+
+
 def stability(log: TestLog, segments: Segments, end: float, modes: Modes) -> Stability:
     """How a hot fire burnt up to its ``end`` [s after the opening]."""
     origin = segments.t_open.value or 0.0
@@ -147,7 +151,7 @@ def _roughness(stretch: Stretch, rest: Stretch | None) -> Roughness:
     range_of_it = part * of.peak_to_peak / stretch.level
     # variances of so many independent samples, of both
     spread = np.hypot(of.variance, noise) * np.sqrt(2.0 / of.value.size)
-    std = min(0.5 * spread / max(np.sqrt(left), 1e-300), np.sqrt(spread)) / stretch.level
+    std = min(0.5 * spread / np.sqrt(left) if left > TINY * spread else np.inf, np.sqrt(spread)) / stretch.level
     return Roughness(
         rms=Quantity(float(rms), "", float(std)),
         peak_to_peak=Quantity(float(range_of_it), "", float(std * of.peak_to_peak / max(np.sqrt(of.variance), 1e-300))),
