@@ -88,7 +88,8 @@ def _without_numbers(text: str) -> str:
 
 SYNONYMS = {
     "p_tank": ("tank",), "p_run": ("run line", "run"), "p_chamber": ("chamber", "p_c"), "thrust": ("load cell",),
-    "hole_area": ("hole area", "holes"), "p_purge": ("purge",), "m_tank": ("mass", "load cell", "scale"), "time": ("clock", "time"),
+    "p_purge": ("purge",), "m_tank": ("mass", "load cell", "scale"), "time": ("clock", "time"),
+    "hole_area": ("hole area", "holes"),
 }  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -273,3 +274,10 @@ def test_a_thermocouple_that_is_open_is_told(way: str, tmp_path: Path) -> None:
     assert {f.kind for f in told} == {"open"}
     assert told[0].whole == (way != "later")
     assert found(tmp_path / "good", columns | {"T_tank": good}, text) == []
+
+
+def test_a_load_that_may_be_nothing_blames_no_channel(tmp_path: Path) -> None:
+    """Stated as 1 +/- 1 kg: a tenth of what flows, with no lower end."""
+    stated = re.sub(r'oxidizer_mass = "[^"]*"', 'oxidizer_mass = "1 +/- 1 kg"', fire.toml() + THROAT)
+    assert "1 +/- 1 kg" in stated
+    assert found(tmp_path, fire.columns(0), stated) == []

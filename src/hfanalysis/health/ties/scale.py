@@ -193,12 +193,14 @@ def _throat_by_mass(test: SeenTest, burn: Burn) -> Throat | None:
 
 
 def _mass(test: SeenTest) -> tuple[float, float] | None:
-    """Propellant that flows in the burn, at least and at most [kg]."""
+    """Propellant that flows in the burn, at least and at most [kg]; None where a stated load may be nothing."""
     tank, grain = test.definition.tank, test.definition.grain
     if tank is None or tank.oxidizer_mass is None:
         return None
     load, std = tank.oxidizer_mass.value, tank.oxidizer_mass.std or 0.05 * tank.oxidizer_mass.value
     least, most = load - DEVIATIONS * std, load + DEVIATIONS * std
+    if not least > 0.0:
+        return None
     fuel = grain.mass.value if grain is not None and grain.mass is not None else (engine.RICHEST - 1.0) * most
     return BURNT[0] * least, BURNT[1] * most + fuel
 
