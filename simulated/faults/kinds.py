@@ -65,6 +65,14 @@ def railed(rng: Rng, log: Log) -> Faulty:
     return Faulty(log.but(name, value), (name,), f"at {share:.2f}")
 
 
+def coarse(rng: Rng, log: Log) -> Faulty:
+    """A converter of few bits: steps of a part of its rise, wider than its noise."""
+    name = pick(rng, log, "p_chamber", "thrust", "p_run", "p_tank")
+    share = float(10.0 ** rng.uniform(-1.2, -0.4))
+    step = max(share * log.rise(name), 4.0 * log.std[name])
+    return Faulty(log.but(name, step * np.round(log.values[name] / step)), (name,), f"{share:.2f} of its rise")
+
+
 def noise(rng: Rng, log: Log) -> Faulty:
     """A cell or gauge that dies in the burn: noise about some level from then on."""
     name, at = pick(rng, log, "p_chamber", "thrust", "m_tank", "p_run"), within(rng, log)
@@ -241,7 +249,7 @@ NEEDS: dict[str, tuple[str, ...]] = {
 """What a log has to hold or state for a fault to be told at all: channels, words of test.toml, the kind of test."""
 
 FAULTS: dict[str, Callable[[Rng, Log], Faulty]] = {
-    "dead": dead, "railed": railed, "noise": noise, "open": open_, "dropout": dropout, "zero": zero, "drift": drift,
+    "dead": dead, "railed": railed, "coarse": coarse, "noise": noise, "open": open_, "dropout": dropout, "zero": zero, "drift": drift,
     "gauge_or_absolute": gauge_or_absolute, "scale": scale, "unit": unit, "sign": sign, "swapped": swapped,
     "gross_mass": gross_mass, "lag": lag, "clock": clock, "edge": edge,
 }  # fmt: skip

@@ -341,10 +341,12 @@ def _show_spread(console: Console, found: Spread) -> None:
     refused = f", {found.refused} of which cannot be run" if found.refused else ""
     console.print(Text(f"bands: {found.draws} engines drawn over what is stated with +/-{refused}"))
     for one in found.chances:
-        console.print(Text(f"  {one.probability:.0%} that {one.text}"), soft_wrap=soft(console))
+        console.print(Text(f"  {100.0 * one.probability:.0f} % that {one.text}"), soft_wrap=soft(console))
     for name, budget in found.budget.items():
         shares = [
-            f"{key} {share:.0%}" for key, share in list(budget.shares.items())[:MOST_SHARES] if share >= LEAST_SHARE
+            f"{key} {100.0 * share:.0f} %"
+            for key, share in list(budget.shares.items())[:MOST_SHARES]
+            if share >= LEAST_SHARE
         ]
         console.print(Text(f"  {in_words(name)} is spread by {', '.join(shares)}"), soft_wrap=soft(console))
 

@@ -48,11 +48,16 @@ class Load(Part):
 
     oxidizer_mass: Annotated[Quantity, Is("of oxidizer", "kg")]
     fuel_mass: Annotated[Quantity, Is("of fuel", "kg")]
+    tank_length: Annotated[Quantity | None, Is("of the tank that holds it, sized as the file's", "m")] = None
+    dip_tube_length: Annotated[Quantity | None, Is("of its dip tube", "m")] = None
+    tank_volume: Annotated[Quantity | None, Is("of the same", "m^3")] = None
 
     @property
     def shown(self) -> dict[str, Quantity]:
         """Under names that say what is to be done with them."""
-        return {"oxidizer_to_load": self.oxidizer_mass, "fuel_to_load": self.fuel_mass}
+        loaded = {"oxidizer_to_load": self.oxidizer_mass, "fuel_to_load": self.fuel_mass}
+        tank = {name: of for name, of in self.quantities.items() if name not in ("oxidizer_mass", "fuel_mass")}
+        return loaded | tank
 
 
 class SpreadInput(Part):

@@ -194,14 +194,14 @@ def _spread(material: EngineMaterial) -> Iterator[Block]:
         return
     refused = f" {found.refused} of them cannot be run." if found.refused else ""
     yield html.paragraph(f"From {found.draws} engines drawn over what the file states with a +/-.{refused}")
-    yield html.bullets((f"{one.probability:.0%} that {one.text}" for one in found.chances), "plain")
+    yield html.bullets((f"{100.0 * one.probability:.0f} % that {one.text}" for one in found.chances), "plain")
     names = list(dict.fromkeys(key for budget in found.budget.values() for key in budget.shares))
     rows = [
-        (key, *(f"{budget.shares.get(key, 0.0):.0%}" for budget in found.budget.values()))
+        (key, *(f"{100.0 * budget.shares.get(key, 0.0):.0f} %" for budget in found.budget.values()))
         for key in names
         if max(budget.shares.get(key, 0.0) for budget in found.budget.values()) >= LEAST_SHARE
     ]
-    rows.append(("beyond straight lines", *(f"{budget.non_linear:.0%}" for budget in found.budget.values())))
+    rows.append(("beyond straight lines", *(f"{100.0 * budget.non_linear:.0f} %" for budget in found.budget.values())))
     columns = ("input", *(f">{in_words(name)}" for name in found.budget))
     if found.budget:
         caption = "Share of the variance that each input makes."

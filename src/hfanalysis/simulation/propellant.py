@@ -12,6 +12,7 @@ from hfanalysis.engine.unsteady import Engine
 from hfanalysis.flight.ascent import NOT_FROM_PAD
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs
+from hfanalysis.simulation import sized
 from hfanalysis.simulation.flown import ascend
 
 LOAD_STEP = 1.15
@@ -22,7 +23,8 @@ LOAD_STEPS = 8
 
 
 def for_apogee(needs: Needs, engine: Engine, target: float) -> dict[str, Quantity]:
-    """Oxidizer and fuel [kg] to load for an apogee ``target`` [m] above the site; or why there is no such load."""
+    """Oxidizer and fuel [kg] to load for an apogee ``target`` [m] above the site, and the tank that holds it; or why
+    there is no such load."""
     of_ratio = engine.oxidizer_mass / engine.fuel_mass
 
     def miss(factor: float) -> float:
@@ -33,10 +35,11 @@ def for_apogee(needs: Needs, engine: Engine, target: float) -> dict[str, Quantit
         factor = _root(miss)
     except (ValueError, ArithmeticError) as error:
         reason = f"no load found for {target:.0f} m: {error}"
-        return {name: Quantity.absent(reason) for name in ("oxidizer_mass", "fuel_mass")}
+        return {name: Quantity.absent(reason) for name in ("oxidizer_mass", "fuel_mass", *sized.TANK)}
     return {
         "oxidizer_mass": Quantity(factor * engine.oxidizer_mass, "kg"),
         "fuel_mass": Quantity(factor * engine.fuel_mass, "kg"),
+        **sized.tank(needs, factor * engine.oxidizer_mass),
     }
 
 
