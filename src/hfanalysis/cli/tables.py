@@ -343,11 +343,8 @@ def _show_spread(console: Console, found: Spread) -> None:
     for one in found.chances:
         console.print(Text(f"  {100.0 * one.probability:.0f} % that {one.text}"), soft_wrap=soft(console))
     for name, budget in found.budget.items():
-        shares = [
-            f"{key} {100.0 * share:.0f} %"
-            for key, share in list(budget.shares.items())[:MOST_SHARES]
-            if share >= LEAST_SHARE
-        ]
+        first = [(key, share) for key, share in budget.shares.items() if share >= LEAST_SHARE][:MOST_SHARES]
+        shares = [f"{key} {100.0 * share:.0f} %" for key, share in first]
         console.print(Text(f"  {in_words(name)} is spread by {', '.join(shares)}"), soft_wrap=soft(console))
 
 
