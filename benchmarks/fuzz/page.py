@@ -47,12 +47,25 @@ def _by_code(pairs: Sequence[Pair], code: str) -> str:
     return f"{earlier}, {len(now)} of the present one ({code}): {own}."
 
 
+def _of_what_can_be_told(pairs: Sequence[Pair], seed: int) -> str:
+    moved = [(row, judged) for row, judged in pairs if judged.moved]
+    hidden = sum(judged.silent and bool(reason(row, seed)) for row, judged in moved)
+    told, left = sum(judged.points for _, judged in moved), len(moved) - hidden
+    share = percent(told / left if left else None)
+    return (
+        f"{hidden} of the {len(moved)} moved by what no log can tell, for the reasons below; of the other {left} "
+        f"{told} are pointed out ({share})."
+    )
+
+
 def _share(moved: Sequence[Judged]) -> float | None:
     return sum(judged.points for judged in moved) / len(moved) if moved else None
 
 
 def _table(pairs: Sequence[Pair], seed: int, code: str) -> Iterator[str]:
     yield f"{summary(pairs)}. Seed {seed}. {_by_code(pairs, code)}"
+    yield ""
+    yield _of_what_can_be_told(pairs, seed)
     yield ""
     yield "| mutation | cases | answer | refused | traceback | hang or killed | moved | pointed out |"
     yield "|---|---|---|---|---|---|---|---|"
