@@ -231,7 +231,7 @@ def test_products_are_the_same_from_run_to_run(run: Run, tmp_path: Path) -> None
         for name in ("one", "two"):
             run(command, MAELSTROM, "-q", "--out", tmp_path / name / command)
     files = [path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*")]
-    assert len(files) == 23
+    assert len(files) == 24
     assert all((tmp_path / "one" / f).read_bytes() == (tmp_path / "two" / f).read_bytes() for f in files)
 
 

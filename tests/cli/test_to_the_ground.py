@@ -68,6 +68,20 @@ def test_histories_have_balance_flux_and_rate(written: Path) -> None:
     assert center[-1] == pytest.approx(stability["center_of_gravity_empty"]["value"])
 
 
+def test_a_warmer_day_gives_more_pressure_and_thrust(written: Path) -> None:
+    found = {name: np.array(cells, dtype=float) for name, cells in table(written / "temperature.csv").items()}
+    warm = found["temperature [degC]"]
+    assert (warm[0], warm[-1]) == (5.0, 35.0)
+    fits = warm < 31.0  # beyond, its load fills the tank with liquid
+    for name in ("peak_thrust [N]", "peak_chamber_pressure [Pa]"):
+        assert (np.diff(found[name][fits]) > 0.0).all()
+        assert np.isnan(found[name][~fits]).all()
+    stated = product(written)
+    for name, unit in (("total_impulse", "N s"), ("burn_time", "s")):
+        assert np.interp(25.0, warm, found[f"{name} [{unit}]"]) == pytest.approx(stated[name]["value"], rel=1e-9)
+    assert np.interp(25.0, warm, found["apogee [m]"]) == pytest.approx(stated["flight"]["apogee"]["value"], rel=1e-6)
+
+
 def test_the_margin_is_told_in_the_report_s_winds_and_in_the_launch_s_own(tmp_path: Path, run: Run) -> None:
     path = engine(tmp_path, GEOMETRY, ('rail_length = "6.05 m"', 'rail_length = "6.05 m"\nwind_speed = "9 m/s"'))
     flight = json.loads(run("simulate", path, "--json")[1])["flight"]
@@ -122,7 +136,7 @@ def test_an_engine_on_its_stand_has_its_static_curve_alone(tmp_path: Path, run: 
 CHARTS = (
     "thrust pressures mixture flows temperatures gas regression port flux tank-mass balance flight-height flight-speed "
     "flight-acceleration flight-mach flight-drag flight-margin specific_impulse_flow_length thrust_flow_length "
-    "exit_radius_flow_length specific_impulse_ideal_flow_length specific_impulse_mixture"
+    "exit_radius_flow_length specific_impulse_ideal_flow_length specific_impulse_mixture temperature"
 )
 
 

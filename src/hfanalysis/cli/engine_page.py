@@ -12,13 +12,14 @@ from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.record.published import TABLES, published
 from hfanalysis.report.engine_page import EngineMaterial, Published, engine_page
 from hfanalysis.simulation import plots, steady_run, study, write
-from hfanalysis.simulation.unsteady_run import Simulation
+from hfanalysis.simulation.unsteady_run import Simulation, on_other_days
 
 
 def write_page(out: Path, file: EngineFile, found: Simulation) -> None:
     """Write ENGINE.html to ``out``; with the steady design and its study, where the file asks for one."""
     flown = found.flown
     design, charts = _design(file)
+    days = on_other_days(found)
     page = engine_page(
         EngineMaterial(
             found.product,
@@ -28,6 +29,7 @@ def write_page(out: Path, file: EngineFile, found: Simulation) -> None:
             _published(file),
             design,
             charts,
+            (plots.over_temperature(days), days.refused),
         )
     )
     write.write_text(out / f"{write.file_name(file)}.html", page)

@@ -20,7 +20,7 @@ from hfanalysis.report.page import body, render
 from hfanalysis.report.payload import payload
 from hfanalysis.report.sections import Block, Laid
 from hfanalysis.sentences import capitalised
-from hfanalysis.wording.numbers import MINUS, fixed, in_words, ordered
+from hfanalysis.wording.numbers import MINUS, fixed, in_words, listed, ordered
 
 KEY_NUMBERS = ("total_impulse", "burn_time", "peak_thrust", "peak_chamber_pressure", "specific_impulse")
 """What is asked for first; the apogee comes after them."""
@@ -48,6 +48,7 @@ class EngineMaterial:
 
     ``burn``: histories over the burn, (n,) each, by name and SI unit ("time [s]"); ``flight``: groups of flight.h5;
     ``design`` and ``study``: of the steady-state design, where the file asks for one, else why there is none.
+    ``days``: the same engine on colder and warmer ones, with the temperatures [degC] at which there is none, and why.
     """
 
     product: Simulated
@@ -57,6 +58,7 @@ class EngineMaterial:
     published: Published
     design: Designed | str
     study: Sequence[Chart] = ()
+    days: tuple[Chart | None, Mapping[float, str]] = (None, {})
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,7 @@ def _sections(material: EngineMaterial) -> Iterator[Laid]:
         ("spread", "How sure they are", _spread, False),
         ("burn", "The burn over time", _burn, False),
         ("flight", "The flight", _flight, False),
+        ("days", "On colder and warmer days", _days, False),
         ("design", "The steady-state design", _design, True),
         ("made", "What this was made from", _made, True),
     ):
@@ -260,6 +263,18 @@ def _flight(material: EngineMaterial) -> Iterator[Block]:
     yield curves.line("drag", "Drag on the way up", "drag", "N")
     if flight.stability is not None:
         yield curves.margin(flight.stability) or without_margin(flight.stability, "the engine file")
+
+
+def _days(material: EngineMaterial) -> Iterator[Block]:
+    chart, refused = material.days
+    if chart is None:
+        return
+    yield chart
+    yield html.paragraph("The tank as built and loaded, at other temperatures: its pressure drives all else.")
+    if refused:
+        where = listed([f"{t:g}" for t in refused])
+        why = next(iter(refused.values())).partition(", tank.")[2] or next(iter(refused.values()))
+        yield html.paragraph(html.switchable(f"Not at {where} degC: {why}."))
 
 
 def _design(material: EngineMaterial) -> Iterator[Block]:

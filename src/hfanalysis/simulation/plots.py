@@ -15,6 +15,7 @@ from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.envelope import Envelope
 from hfanalysis.charts.style import sheet
 from hfanalysis.flight.histories import Flown
+from hfanalysis.simulation.over_temperature import NAMES, OverTemperature
 from hfanalysis.simulation.study import FlowPoint, MixturePoint
 from hfanalysis.steady_design.steady import SteadyEngine
 
@@ -99,6 +100,17 @@ def study_charts(flows: Sequence[FlowPoint], mixtures: Sequence[MixturePoint]) -
         yield _across("specific_impulse_ideal_flow_length", title, ("specific impulse", "s"), _FLOW, ideal)
     title = "Specific impulse expanded to ambient, against O/F and chamber pressure"
     yield _across("specific_impulse_mixture", title, ("specific impulse", "s"), "O/F", list(_by_pressure(mixtures)))
+
+
+def over_temperature(found: OverTemperature) -> Chart | None:
+    """How numbers change with the day, in percent of those at the stated temperature; None where that has none."""
+    lines = [
+        Series(NAMES[name], STYLES[i % len(STYLES)], found.temperature, 100.0 * (of / found.stated[name] - 1.0))
+        for i, (name, of) in enumerate(found.numbers.items())
+        if np.isfinite(found.stated[name])
+    ]
+    title = "Against the temperature of the tank"
+    return _across("temperature", title, ("change", "%"), "temperature of the tank [degC]", lines) if lines else None
 
 
 def _across(key: str, title: str, about: tuple[str, str], x_label: str, lines: Sequence[Series]) -> Chart:

@@ -191,7 +191,7 @@ def bands(file: EngineFile, effects: Adopted, command: str, count: int = DRAWS, 
     burns = burn_many(engines)
     with ThreadPoolExecutor(2) as pool:
         jobs = [(found.files[i].file, e, b) for i, e, b in zip(there, engines, burns, strict=True)]
-        rows = list(pool.map(lambda job: _row(*job), jobs))
+        rows = list(pool.map(lambda job: numbers_of(*job), jobs))
     engine, flight, beside = (table([row[k] for row in rows], there, count) for k in range(3))
     refused = count - sum(row[0] != {} for row in rows)
     target = file.design.target_apogee.value if file.design.target_apogee else None
@@ -211,7 +211,7 @@ ASKED = ("apogee", "total_impulse", "peak_chamber_pressure")
 """Numbers of which it is told whose spread costs most."""
 
 
-def _row(file: EngineFile, engine: Engine, burnt: Burn | str) -> tuple[dict[str, float], ...]:
+def numbers_of(file: EngineFile, engine: Engine, burnt: Burn | str) -> tuple[dict[str, float], ...]:
     """Numbers of an engine, of its flight, and beside them, of one draw."""
     if isinstance(burnt, str):
         return {}, {}, {}

@@ -23,6 +23,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.simulation import flown, heading, numbers, propellant, sized, spread, warned
+from hfanalysis.simulation.over_temperature import OverTemperature, over_temperature
 
 COMMAND = "hfa simulate"
 
@@ -39,6 +40,7 @@ class Simulation:
     there is none, and the JSON product."""
 
     file: EngineFile
+    adopted: Adopted
     tank: TankBuilt
     engine: Engine
     burnt: Burn
@@ -87,7 +89,7 @@ def simulate(file: EngineFile, until: float | None = None, draws: int = 0) -> Si
             "provenance": heading.provenance(file),
         }
     )
-    return Simulation(file, tank, engine, burnt, hot, found, product)
+    return Simulation(file, adopted, tank, engine, burnt, hot, found, product)
 
 
 def _effects(file: EngineFile) -> Adopted:
@@ -95,6 +97,11 @@ def _effects(file: EngineFile) -> Adopted:
     if not file.effects:
         return Adopted()
     return effects_in(file.effects, file.path, library_of(file.path, file.effects))
+
+
+def on_other_days(found: Simulation) -> OverTemperature:
+    """The engine over the temperature of its tank."""
+    return over_temperature(found.file, found.adopted, COMMAND)
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:

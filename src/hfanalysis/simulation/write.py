@@ -21,7 +21,7 @@ from hfanalysis.simulation import motor, plots, study
 from hfanalysis.simulation.flown import held
 from hfanalysis.simulation.steady_run import DesignRun
 from hfanalysis.simulation.study import FlowPoint, MixturePoint
-from hfanalysis.simulation.unsteady_run import Simulation
+from hfanalysis.simulation.unsteady_run import Simulation, on_other_days
 from hfanalysis.steady_design.steady import SteadyEngine
 
 STATES = {
@@ -46,6 +46,11 @@ OUTPUTS = {
 }
 """Histories of a simulation, with units."""
 
+OVER_TEMPERATURE = {
+    "total_impulse": "N s", "peak_thrust": "N", "peak_chamber_pressure": "Pa", "burn_time": "s", "apogee": "m",
+}  # fmt: skip
+"""Columns over the temperature of the tank, with units."""
+
 OF_ASCENT = {
     "time": "s", "height": "m", "altitude": "m", "speed": "m/s", "acceleration": "m/s^2", "thrust": "N", "drag": "N",
     "mass": "kg", "mach": "1",
@@ -61,6 +66,9 @@ def simulation(out: Path, simulation: Simulation) -> None:
     write_table(out / "histories.csv", list(table), np.column_stack(list(table.values())).tolist())
     for name, text in plots.simulation(table):
         write_text(out / name, text)
+    days = on_other_days(simulation)
+    columns = ["temperature [degC]", *(f"{key} [{OVER_TEMPERATURE[key]}]" for key in days.numbers)]
+    write_table(out / "temperature.csv", columns, np.column_stack([days.temperature, *days.numbers.values()]).tolist())
     name, found = file_name(simulation.file), simulation.flown
     if isinstance(found, str):
         points, said = motor.standing(simulation.file, simulation.engine)
