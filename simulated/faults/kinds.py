@@ -249,9 +249,9 @@ NEEDS: dict[str, tuple[str, ...]] = {
 """What a log has to hold or state for a fault to be told at all: channels, words of test.toml, the kind of test."""
 
 FAULTS: dict[str, Callable[[Rng, Log], Faulty]] = {
-    "dead": dead, "railed": railed, "coarse": coarse, "noise": noise, "open": open_, "dropout": dropout, "zero": zero, "drift": drift,
-    "gauge_or_absolute": gauge_or_absolute, "scale": scale, "unit": unit, "sign": sign, "swapped": swapped,
-    "gross_mass": gross_mass, "lag": lag, "clock": clock, "edge": edge,
+    "dead": dead, "railed": railed, "coarse": coarse, "noise": noise, "open": open_, "dropout": dropout, "zero": zero,
+    "drift": drift, "gauge_or_absolute": gauge_or_absolute, "scale": scale, "unit": unit, "sign": sign,
+    "swapped": swapped, "gross_mass": gross_mass, "lag": lag, "clock": clock, "edge": edge,
 }  # fmt: skip
 """By the kind of finding that they are to give."""
 
