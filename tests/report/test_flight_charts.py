@@ -14,7 +14,7 @@ def test_a_coast_in_longer_steps_than_the_burn_is_drawn_whole() -> None:
     chart = curves.curve("height")
     assert chart is not None
     (line,) = chart.lines
-    drawn = line.reduced(*chart.span, 500)
+    drawn = line.reduced(*chart.span, 24_000)
     inside = (drawn.time > 0.1) & (drawn.time < 24.9)
     assert inside.sum() > 400
     assert np.isfinite(drawn.mean[inside]).all()
