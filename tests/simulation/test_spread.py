@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from tests.cli.shaped import MAELSTROM
 
+from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.products.engines import Simulated
 from hfanalysis.record.document import read_toml
@@ -127,3 +128,17 @@ def test_a_design_has_bands_as_well() -> None:
     ends = [steady_run.design(file(grain__a=a)).product.fuel_mass.value for a in (1.27e-4, 1.37e-4)]
     assert told.fuel_mass.std == pytest.approx(abs(np.subtract(*ends)) / 2.0, rel=0.3)
     assert told.grain_length.std is None
+
+
+@pytest.mark.parametrize(("name", "std"), [("volume", 2e-4), ("fuel_mass", 0.02), ("oxidizer_mass", 0.05), ("m", 0.02)])
+def test_every_name_of_a_covariance_moves_the_engine(name: str, std: float) -> None:
+    errors = {"names": [name], "std": [std], "correlation": [[1.0]]}
+    told = found(100, covariance=errors, tank__polytropic_exponent=1.1)
+    assert told.total_impulse.std is not None
+    assert told.total_impulse.std > 1e-5 * told.total_impulse.value
+
+
+def test_a_name_that_is_no_constant_of_the_engine_is_refused() -> None:
+    errors = {"names": ["weather"], "std": [1.0], "correlation": [[1.0]]}
+    with pytest.raises(InputError, match=r"covariance\.names: found 'weather'"):
+        found(20, covariance=errors)

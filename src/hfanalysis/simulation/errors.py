@@ -20,10 +20,12 @@ def off_by(engine: Engine, off: Mapping[str, float], measured_on: Engine) -> Eng
         engine,
         feed=replace(
             feed,
+            volume=feed.volume + off.get("volume", 0.0),
             area=feed.area * exp(off.get("flow_area", 0.0) / measured_on.feed.area),
             loss_factor=max(feed.loss_factor + off.get("K_loss", 0.0), 0.0),
         ),
         oxidizer_mass=engine.oxidizer_mass + off.get("oxidizer_mass", 0.0),
+        fuel_mass=engine.fuel_mass + off.get("fuel_mass", 0.0),
         polytropic_exponent=None if m is None else m + off.get("m", 0.0),
         a=engine.a * exp(ln_a),
         n=engine.n + off.get("n", 0.0),

@@ -38,6 +38,9 @@ PRIOR_SCATTER = 0.067
 than FEWEST tests tell. Source: NFPA 1125 certifies no motor whose total impulse differs by more among its firings; that
 C_i and the rate share it is by choice. No test or replica of this package was used for it."""
 
+OF_THE_FIRED = ("oxidizer_mass", "volume", "fuel_mass")
+"""Names of ``joint`` that are of the test that was fired: what the plan states takes their place."""
+
 RATE = "regression rate"
 """What scatters beside C_i."""
 
@@ -183,7 +186,8 @@ def changes(
     factor = lower_factor(correlation) * np.array(joint.std)[:, None]
     for _ in range(count):
         off = dict(zip(joint.names, factor @ rng.standard_normal(len(joint.names)), strict=True))
-        off.pop("oxidizer_mass", None)  # of the test that was fired; the plan's load is stated
+        for name in OF_THE_FIRED:
+            off.pop(name, None)
         own_throat = _relative(file.nozzle.throat_radius) * rng.standard_normal()
         if own_throat:
             off.pop("throat_area", None)

@@ -49,6 +49,8 @@ TOGETHER = "constants together ([covariance])"
 
 COVERED = {
     "oxidizer_mass": ("tank.oxidizer_mass",),
+    "volume": ("tank.volume", "tank.length", "tank.ullage"),
+    "fuel_mass": ("grain.mass",),
     "flow_area": ("injector.C_i", "injector.hole_area", "injector.hole_diameter"),
     "K_loss": ("feed.K_loss",),
     "m": ("tank.polytropic_exponent",),
@@ -137,6 +139,10 @@ def draw(file: EngineFile, count: int, seed: int) -> Draws:
     names: tuple[str, ...] = ()
     if (errors := file.covariance) is not None:
         names = tuple(errors.names)
+        for name in names:
+            if name not in COVERED:
+                where = file.where("covariance", "names")
+                raise InputError(f"{where}: found {name!r}; expected some of {', '.join(COVERED)}")
         shared = rng.standard_normal((count, len(names)))
         together = shared @ (lower_factor(np.array(errors.correlation)) * np.array(errors.std)[:, None]).T
         inputs[TOGETHER] = shared
