@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from hfanalysis.products.campaign import Campaign
 from hfanalysis.products.effects import EffectLibrary
-from hfanalysis.products.engines import Designed, Simulated
+from hfanalysis.products.engines import Designed, NextTests, Simulated
 from hfanalysis.products.kinds import KINDS
 from hfanalysis.products.model import Is, Part, Product
 from hfanalysis.products.prediction import Prediction, Score
@@ -21,7 +21,7 @@ PAGE, SCHEMAS = DOCS / "products.md", DOCS / "schemas"
 BLOCK = re.compile(
     r"(<!-- fields of (?P<file>\S+) \(written by `make readme`\) -->\n).*?(<!-- end of fields -->)", re.DOTALL
 )
-OTHERS = (Campaign, Simulated, Designed, EffectLibrary, QuickLook, Prediction, Score)
+OTHERS = (Campaign, Simulated, Designed, NextTests, EffectLibrary, QuickLook, Prediction, Score)
 """What commands write or print that is no product of a stage."""
 ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in OTHERS}}
 

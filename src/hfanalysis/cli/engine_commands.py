@@ -132,10 +132,29 @@ def _score(
         predict.score(name, test, root, as_json, quiet)
 
 
+def _next(
+    engine: EngineToml,
+    wanted: Annotated[
+        str | None, typer.Option("--for", metavar="NAME", help="apogee, total_impulse, or a constant of [covariance].")
+    ] = None,
+    as_json: ProductJson = False,
+    quiet: Quiet = False,
+    trust_effects: Trust = False,
+) -> None:
+    """Rank what to test next by how far each test would narrow the apogee, the impulse or a constant."""
+    with plain_exit():
+        from hfanalysis.cli import engines
+        from hfanalysis.effects import beside
+
+        ask(beside(engine.absolute()).parent, trust_effects)
+        engines.next_tests(engine, wanted, as_json, quiet)
+
+
 OF_ENGINES: dict[str, Callable[..., None]] = {
     "simulate": _simulate,
     "design": _design,
     "engine": _engine,
+    "next": _next,
     "predict": _predict,
     "score": _score,
 }

@@ -65,6 +65,21 @@ def design(path: Path, out: Path | None, as_json: bool, quiet: bool, given: Mapp
     _show(found.product, as_json, quiet)
 
 
+def next_tests(path: Path, wanted: str | None, as_json: bool, quiet: bool) -> None:
+    """What to test next with the engine file at ``path``; ``wanted``: what is to be narrowed."""
+    file = load_engine(path)
+    with watch(file.engine.id, quiet):
+        from hfanalysis.simulation import next_test, unsteady_run
+
+        found = next_test.next_tests(file, unsteady_run.effects_of(file), wanted)
+    if as_json:
+        put(to_json(found))
+    elif not quiet:
+        from hfanalysis.cli import tables
+
+        tables.show_next(found)
+
+
 @contextmanager
 def _writing(out: Path) -> Iterator[None]:
     try:

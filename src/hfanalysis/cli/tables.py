@@ -24,7 +24,7 @@ if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.calibration import RegressionBasis
     from hfanalysis.products.campaign import CommonLaw
     from hfanalysis.products.effects import EffectEntry, EffectLibrary
-    from hfanalysis.products.engines import Designed, Simulated, Spread
+    from hfanalysis.products.engines import Designed, NextTests, Simulated, Spread
     from hfanalysis.products.quick import QuickLook
     from hfanalysis.products.reconstruction import Reconstruction
     from hfanalysis.products.validation import Validation
@@ -346,6 +346,22 @@ def _show_spread(console: Console, found: Spread) -> None:
         first = [(key, share) for key, share in budget.shares.items() if share >= LEAST_SHARE][:MOST_SHARES]
         shares = [f"{key} {100.0 * share:.0f} %" for key, share in first]
         console.print(Text(f"  {in_words(name)} is spread by {', '.join(shares)}"), soft_wrap=soft(console))
+
+
+def show_next(found: NextTests) -> None:
+    """Print what to test next."""
+    console = paper()
+    unit = f" {found.unit}" if found.unit else ""
+    value = "" if found.value is None else f" of {found.value:.4g}{unit}"
+    head = f"{in_words(found.target)}{value}: ± {found.std:.3g}{unit} by what is not known of the constants"
+    console.print(Text(head), soft_wrap=soft(console))
+    table = new_table("a further test", "then ±", "less by", "", title="what to test next")
+    for row in found.tests:
+        told = ("–", "", row.reason or "") if row.std is None else (f"{row.std:.3g}", f"{row.narrowed:.3g}", "")
+        table.add_row(row.name, *told)
+    console.print(table)
+    worth = [f"{one.name} {max(one.worth, 0.0):.2g}{unit}" for one in found.sensors]
+    console.print(Text(f"worth of each sensor to the same test again: {', '.join(worth)}"), soft_wrap=soft(console))
 
 
 def show_effects(product: EffectLibrary) -> None:

@@ -158,3 +158,34 @@ class Designed(EngineHead):
     beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
     provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]
+
+
+class NextTest(Part):
+    """A test that is thought of."""
+
+    name: Annotated[str, Is("what of the engine is another then")]
+    std: Annotated[float | None, Is("standard deviation of the target after it", "as unit says")] = None
+    narrowed: Annotated[float | None, Is("by how much that is less than now", "as unit says")] = None
+    reason: Annotated[str | None, Is("why it cannot be told")] = None
+
+
+class SensorWorth(Part):
+    """What a sensor is worth to the same test again."""
+
+    name: Annotated[str, Is("of the sensor")]
+    worth: Annotated[float, Is("by how much more the target's deviation is without it", "as unit says")]
+
+
+class NextTests(Part):
+    """What to test next: each test by how far it narrows what is not known of an engine."""
+
+    file: ClassVar[str] = "next.json"
+
+    engine: Annotated[str, Is("its name")]
+    target: Annotated[str, Is("what is to be narrowed")]
+    unit: Annotated[str, Is("of the target")]
+    value: Annotated[float | None, Is("of the target", "as unit says")]
+    std: Annotated[float, Is("its standard deviation by the constants, now", "as unit says")]
+    tests: Annotated[tuple[NextTest, ...], Is("the one that narrows most first")]
+    sensors: Annotated[tuple[SensorWorth, ...], Is("the one that is worth most first")]
+    assumed: Annotated[Mapping[str, float], Is("relative standard deviations of what is measured", "")]

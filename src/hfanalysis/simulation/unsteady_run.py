@@ -63,7 +63,7 @@ def simulate(file: EngineFile, until: float | None = None, draws: int = 0) -> Si
     """
     needs = Needs(file, COMMAND)
     tank = build.tank(needs)
-    adopted = _effects(file)
+    adopted = effects_of(file)
     engine = replace(build.engine(needs, tank), effects=adopted.acting)
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
@@ -92,7 +92,7 @@ def simulate(file: EngineFile, until: float | None = None, draws: int = 0) -> Si
     return Simulation(file, adopted, tank, engine, burnt, hot, found, product)
 
 
-def _effects(file: EngineFile) -> Adopted:
+def effects_of(file: EngineFile) -> Adopted:
     """What [effects] states beside the base model, a team's own among them; InputError for what cannot be."""
     if not file.effects:
         return Adopted()
