@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from hfanalysis.archive.reading import Archive
-    from hfanalysis.interface.engines import design, simulate
+    from hfanalysis.interface.engines import design, next_tests, simulate
     from hfanalysis.interface.firing import Firing, open
     from hfanalysis.interface.made import firing
     from hfanalysis.interface.of_test import engine_file
@@ -35,6 +35,7 @@ __all__ = [
     "engine_file",
     "firing",
     "load_residuals",
+    "next_tests",
     "open",
     "predict",
     "score",
@@ -48,6 +49,7 @@ _PLACES = {
     "firing": "interface.made",
     "simulate": "interface.engines",
     "design": "interface.engines",
+    "next_tests": "interface.engines",
     "engine_file": "interface.of_test",
     "predict": "interface.predicting",
     "score": "interface.predicting",

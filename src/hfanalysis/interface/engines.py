@@ -14,7 +14,7 @@ from hfanalysis.record.engine_file import EngineFile, engine_of
 if TYPE_CHECKING:
     import xarray as xr
 
-    from hfanalysis.products.engines import Designed
+    from hfanalysis.products.engines import Designed, NextTests
 
 BETWEEN = "__"
 """Between a section and its key where a dot cannot be."""
@@ -41,11 +41,29 @@ def simulate(
     return _dataset(histories(found), found.product.to_json())
 
 
-def design(engine: str | Path | Mapping[str, Any], **changes: Any) -> Designed:
+def design(engine: str | Path | Mapping[str, Any], draws: int = 0, **changes: Any) -> Designed:
     """The steady-state design of an engine, as ``hfa design`` has it; arguments as of :func:`simulate`."""
     from hfanalysis.simulation.steady_run import design as run
 
-    return run(_stated(engine, changes)).product
+    return run(_stated(engine, changes), draws).product
+
+
+def next_tests(engine: str | Path | Mapping[str, Any], wanted: str | None = None, **changes: Any) -> NextTests:
+    """What to test next, as ``hfa next`` ranks it.
+
+    Args:
+        engine: an engine file with its [covariance], or what it would state, by section.
+        wanted: what is to be narrowed: apogee, total_impulse, or a constant.
+        changes: as of :func:`simulate`.
+
+    Raises:
+        InputError: the file is at fault, lacks what the model needs, or nothing of that name is in it.
+    """
+    from hfanalysis.simulation.next_test import next_tests as rank
+    from hfanalysis.simulation.unsteady_run import effects_of
+
+    file = _stated(engine, changes)
+    return rank(file, effects_of(file), wanted)
 
 
 def _stated(engine: str | Path | Mapping[str, Any], changes: Mapping[str, Any]) -> EngineFile:
