@@ -75,8 +75,9 @@ def added(test: str, out: str, repeat: int) -> tuple[float, float]:
 
 
 def elsewhere(checkout: Path, test: str, out: str) -> list[str]:
-    """The calibration done anew by the source of another checkout, warm."""
-    code = f"import sys; sys.path.insert(0, {str(checkout / 'src')!r}); from hfanalysis.cli import main; main()"
+    """The calibration done anew by the source of another checkout, on its own copy of the test, warm."""
+    there = f"os.chdir({str(checkout)!r}); sys.path.insert(0, {str(checkout / 'src')!r})"
+    code = f"import os, sys; {there}; from hfanalysis.cli import main; main()"
     command = [sys.executable, "-c", code, "calibrate", test, "--out", str(Path(out) / "elsewhere"), "--force"]
     processor(command)
     return command
