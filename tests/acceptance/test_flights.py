@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 import pandas as pd
 import pytest
+from tests.cli.shaped import GEOMETRY
 
 from hfanalysis.flight import rasp, rocksim
 from hfanalysis.flight.motor import problems
@@ -183,20 +184,6 @@ def test_halcyon_s_altitude_follows_its_altimeter(halcyon: tuple[dict[str, Any],
     at = np.arange(1.0, 27.0, 0.5)
     difference = np.interp(at, time, height) - np.interp(at + late, clock, measured)
     assert np.abs(difference).max() < 0.05 * 3450.0
-
-
-GEOMETRY = """
-[rocket.geometry]
-nose = { kind = "ogive", length = "0.6 m" }
-body = { length = "3.64 m" }
-fins = { count = 4, root = "0.30 m", tip = "0.12 m", span = "0.16 m" }
-structure = { mass = "40 kg", center_of_gravity = "1.75 m" }
-tank_position = "2.1 m"
-chamber_position = "3.4 m"
-engine_mass = "12.5 kg"
-engine_center_of_gravity = "3.1 m"
-"""
-"""A rocket of the report's length and diameter; the rest is made up."""
 
 
 @pytest.fixture(scope="module")

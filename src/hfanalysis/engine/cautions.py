@@ -106,22 +106,18 @@ def separation(chamber: float, ambient: float, gamma: float, expansion: float) -
 def static_margin(least: float, largest: float, limits: tuple[float, float], wind: float) -> Cautions:
     """``least`` and ``largest`` margin [calibers] in a ``wind`` [m/s], two deviations over gusts included."""
     low, high = limits
-    here = said(wind, "m/s", ".1f")
-    if least < low:
-        words = text(
-            "in a wind of {wind} the static margin comes down to {least:.1f} calibers, below {low:g} ({source}): a "
-            "gust may turn the rocket over",
-            wind=here, least=least, low=low, source=_GUIDE,
-        )  # fmt: skip
-        return (_caution("static_margin", least, low, "", _GUIDE, words),)
-    if largest > high:
-        words = text(
-            "in a wind of {wind} the static margin comes up to {largest:.1f} calibers, above {high:g} ({source}): the "
-            "rocket turns far into the wind",
-            wind=here, largest=largest, high=high, source=_GUIDE,
-        )  # fmt: skip
-        return (_caution("static_margin", largest, high, "", _GUIDE, words),)
-    return ()
+    if low <= least and largest <= high:
+        return ()
+    margin, limit, way, means = (
+        (least, low, "down to {margin:.1f} calibers, below", "a gust may turn the rocket over")
+        if least < low
+        else (largest, high, "up to {margin:.1f} calibers, above", "the rocket turns far into the wind")
+    )
+    words = text(
+        f"in a wind of {{wind}} the static margin comes {way} {{limit:g}} ({{source}}): {means}",
+        wind=said(wind, "m/s", ".1f"), margin=margin, limit=limit, source=_GUIDE,
+    )  # fmt: skip
+    return (_caution("static_margin", margin, limit, "", _GUIDE, words),)
 
 
 def frozen_tank(temperature: float) -> Cautions:
