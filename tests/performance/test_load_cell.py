@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime
+
 import numpy as np
 import pytest
 
@@ -49,3 +51,13 @@ def test_what_health_doubts_of_the_zero_counts_once_as_drift() -> None:
     assert found.zero == pytest.approx(0.5)
     assert found.course == pytest.approx(max(20.0, ANY_COURSE * 60.0))
     assert found.gain == GAIN
+
+
+def test_a_cell_that_nobody_calibrated_in_place_is_known_to_one_per_cent() -> None:
+    """As forces of no stated accuracy are taken to be; one that was, to a quarter of that (ASTM E74, class A)."""
+    assert cell(zero_std=0.5).gain == pytest.approx(0.01)
+    assert cell(zero_std=0.5, accuracy=200.0).gain > 0.02
+    day = datetime.date(2026, 5, 1)
+    channel = Channel("thrust", "N", TIME, np.full(TIME.size, 2000.0), np.zeros(TIME.size, np.uint8), 1.0, True, "")
+    thrust = Thrust(Signal.of(channel), 0.0, np.nan)
+    assert cell_error(channel, thrust, channel.values, day, day).gain == pytest.approx(0.0025)
