@@ -20,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -57,16 +57,19 @@ all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_test
 # A file's tests stay together, for they share what is slow to make, and the files in their order, for the slowest are the
 # first ones; linear algebra on one core, for the workers have the others. Byte code is kept, whatever the shell says:
 # the processes that tests start would each compile all sources anew.
-test: lint rocketpy ## ruff, mypy and the tests
+test: lint tests ## ruff, mypy and the tests
+
+tests: $(STAMP) rocketpy ## the tests alone
 	PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder $(FLAGS)
 
 PYTHONS ?= python3.11 python3.12 python3.13
-test-all: ## make test under several Pythons, each in an environment of its own: PYTHONS="/path/to/python3.12 …"
+# Types are checked by `make lint` alone, with the lowest Python: libraries' types for later ones are written in later words.
+test-all: ## the tests under several Pythons, each in an environment of its own: PYTHONS="/path/to/python3.12 …"
 	@status=0; for python in $(PYTHONS); do \
 		version=$$("$$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null) || \
 			{ echo "make test-all: $$python is not here: not tried" >&2; status=1; continue; }; \
 		echo "make test-all: Python $$version" >&2; \
-		$(MAKE) --no-print-directory test PYTHON="$$python" VENV=.venv-$$version || status=1; \
+		$(MAKE) --no-print-directory tests PYTHON="$$python" VENV=.venv-$$version || status=1; \
 	done; exit $$status
 
 lint: $(STAMP) ## ruff, mypy, and that no room of the package imports one above it
