@@ -24,8 +24,7 @@ from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.simulation import flown
 from hfanalysis.simulation.errors import off_by
 from hfanalysis.simulation.foretelling import PRIOR_SCATTER
-from hfanalysis.simulation.spread import COVERED
-from hfanalysis.validate.model_errors import lower_factor
+from hfanalysis.simulation.spread import factor_of
 
 COMMAND = "hfa next"
 
@@ -120,13 +119,8 @@ def next_tests(file: EngineFile, effects: Adopted, wanted: str | None = None, se
 def _draws(file: EngineFile, needs: Needs, seed: int) -> Draws:
     errors = needs.value(file.covariance, "covariance", "names")
     names, rng = list(errors.names), np.random.default_rng(seed)
-    factor = lower_factor(np.array(errors.correlation)) * np.array(errors.std)[:, None]
+    factor = factor_of(file, errors)
     fired, further = (rng.standard_normal((DRAWS, len(names))) @ factor.T for _ in range(2))
-    for name in names:
-        if name not in COVERED:
-            raise InputError(
-                f"{file.where('covariance', 'names')}: found {name!r}; expected some of {', '.join(COVERED)}"
-            )
     return Draws(
         {name: fired[:, i] for i, name in enumerate(names) if name not in OWN},
         {name: further[:, i] for i, name in enumerate(names) if name in OWN},

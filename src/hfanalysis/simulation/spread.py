@@ -23,6 +23,7 @@ from hfanalysis.products.engines import Chance, Spread, SpreadInput
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.record.schema import Section, changed
+from hfanalysis.record.sections import CovarianceSection
 from hfanalysis.record.unused import LOOSE_OF_ENGINES, OF_ENGINES
 from hfanalysis.simulation import flown, numbers, warned
 from hfanalysis.simulation.errors import off_by
@@ -139,12 +140,8 @@ def draw(file: EngineFile, count: int, seed: int) -> Draws:
     names: tuple[str, ...] = ()
     if (errors := file.covariance) is not None:
         names = tuple(errors.names)
-        for name in names:
-            if name not in COVERED:
-                where = file.where("covariance", "names")
-                raise InputError(f"{where}: found {name!r}; expected some of {', '.join(COVERED)}")
         shared = rng.standard_normal((count, len(names)))
-        together = shared @ (lower_factor(np.array(errors.correlation)) * np.array(errors.std)[:, None]).T
+        together = shared @ factor_of(file, errors).T
         inputs[TOGETHER] = shared
         stated += [SpreadInput(name=f"covariance.{n}", std=float(s)) for n, s in zip(names, errors.std, strict=True)]
     files = tuple(
@@ -152,6 +149,16 @@ def draw(file: EngineFile, count: int, seed: int) -> Draws:
         for row, off in zip(normal.tolist(), together.tolist(), strict=True)
     )
     return Draws(files, inputs, tuple(stated))
+
+
+def factor_of(file: EngineFile, errors: CovarianceSection) -> Array:
+    """Lower factor (k, k) [SI] of the file's covariance; times independent standard normal numbers (k,) it gives errors
+    of the constants together. Raises InputError for a constant that no engine has."""
+    for name in errors.names:
+        if name not in COVERED:
+            where = file.where("covariance", "names")
+            raise InputError(f"{where}: found {name!r}; expected some of {', '.join(COVERED)}")
+    return np.asarray(lower_factor(np.array(errors.correlation)) * np.array(errors.std)[:, None])
 
 
 def _moved(file: EngineFile, found: Sequence[Loose], normal: Sequence[float]) -> EngineFile:
