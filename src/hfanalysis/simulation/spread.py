@@ -18,6 +18,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.flight.summary import FlightSpread
 from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.inference.budget import by_draws
+from hfanalysis.processors import processors
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.engines import Chance, Spread, SpreadInput
 from hfanalysis.quantity import Quantity
@@ -202,7 +203,7 @@ def bands(file: EngineFile, effects: Adopted, command: str, count: int = DRAWS, 
     there = [i for i, one in enumerate(made) if isinstance(one, Engine)]
     engines = [replace(one, effects=effects.drawn(effects.acting, rng)) for one in made if isinstance(one, Engine)]
     burns = burn_many(engines)
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(processors()) as pool:
         jobs = [(found.files[i].file, e, b) for i, e, b in zip(there, engines, burns, strict=True)]
         rows = list(pool.map(lambda job: numbers_of(*job), jobs))
     engine, flight, beside = (table([row[k] for row in rows], there, count) for k in range(3))
