@@ -68,6 +68,13 @@ def test_another_seed_leaves_the_best_the_best() -> None:
     assert len(set(one[:3]) & set(two[:3])) >= 2
 
 
+def test_how_well_the_fired_load_is_known_is_no_part_of_the_next_engine_s() -> None:
+    def spread(load: float) -> float:
+        return found(names=["n", "oxidizer_mass"], std=[0.02, load], correlation=[[1.0, 0.0], [0.0, 1.0]]).std
+
+    assert spread(0.3) == pytest.approx(spread(1e-6), rel=1e-9)
+
+
 def test_without_scatter_between_tests_more_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     with_it = by_name(found("n"))
     monkeypatch.setattr(next_test, "PRIOR_SCATTER", 1e-6)
