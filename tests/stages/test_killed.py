@@ -55,6 +55,15 @@ def test_a_killed_run_leaves_whole_products_or_none(root: Path, seed: int) -> No
     assert sha256_file(root / "raw_tests/T1/log.csv") == raw
 
 
+def test_what_a_killed_run_left_in_an_inner_folder_is_removed(root: Path) -> None:
+    left = root / "processed/T1/.state/stand" / f"{TEMPORARY}5468-HF4.h5"
+    left.parent.mkdir(parents=True)
+    left.write_text("half")
+    child = start(root)
+    assert child.communicate()[1] == b""
+    assert not left.exists()
+
+
 def test_two_runs_at_once_do_not_clash(root: Path) -> None:
     children = [start(root), start(root)]
     assert [child.communicate()[1] for child in children] == [b"", b""]

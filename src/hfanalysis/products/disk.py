@@ -94,8 +94,8 @@ def share(path: Path) -> None:
 
 
 def remove_temporaries(folder: Path) -> None:
-    """Remove what killed runs left behind in ``folder`` (the caller holds the folder's lock)."""
-    for left in folder.glob(f"{TEMPORARY}*"):
+    """Remove what killed runs left behind in ``folder`` and below it (the caller holds the folder's lock)."""
+    for left in folder.rglob(f"{TEMPORARY}*"):
         left.unlink(missing_ok=True)
 
 
