@@ -97,7 +97,7 @@ def run_one(test: Test, root: Path, digest: str) -> tuple[str, float]:
     from simulated.worlds.write import answer_path, write_test
 
     started = perf_counter()
-    if not answer_path(test, root).is_file():
+    if not answer_path(test.id, root).is_file():
         write_test(test, root)
     with tempfile.TemporaryDirectory() as scratch:
         outcome = diagnosed(root, test.id, Path(scratch))

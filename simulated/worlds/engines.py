@@ -57,13 +57,19 @@ def drawn(rng: np.random.Generator, engine: str, end: str, world: World) -> Stan
     while True:
         stand = _draw_once(rng, ENGINES[engine])
         base = simulated(stand, world)
-        p_c = float(base.trace(s.P_CHAMBER)[700])
-        if not (base.t_v > 1.5 and 6e5 < p_c < 0.75 * float(base.trace(s.P_RUN)[700])):
-            continue
-        empty = base.time[np.flatnonzero(base.trace(s.P_TANK) > stand.ambient + 0.6e5)[-1]]
-        stand = replace(stand, closing=round(min(LONGEST, float(empty)), 3))
-        if base.t_v < stand.closing - 0.7:
-            return _loaded(rng, stand, base, end)
+        if (closed := closed_in_time(stand, base, 6e5, 0.75)) is not None:
+            return loaded(rng, closed, base, end)
+
+
+def closed_in_time(stand: Stand, base: Histories, least: float, most: float) -> Stand | None:
+    """A stand with the instant at which its valve is closed; None where its burn is no plausible one: the chamber below
+    ``least`` [Pa], or above the part ``most`` of the injector's pressure, or the liquid gone too soon or too late."""
+    p_c = float(base.trace(s.P_CHAMBER)[700])
+    if not (base.t_v > 1.5 and least < p_c < most * float(base.trace(s.P_RUN)[700])):
+        return None
+    empty = base.time[np.flatnonzero(base.trace(s.P_TANK) > stand.ambient + 0.6e5)[-1]]
+    closed = replace(stand, closing=round(min(LONGEST, float(empty)), 3))
+    return closed if base.t_v < closed.closing - 0.7 else None
 
 
 def _draw_once(rng: np.random.Generator, of: Class) -> Stand:
@@ -92,7 +98,7 @@ def _draw_once(rng: np.random.Generator, of: Class) -> Stand:
     )  # fmt: skip
 
 
-def _loaded(rng: np.random.Generator, stand: Stand, base: Histories, end: str) -> Stand:
+def loaded(rng: np.random.Generator, stand: Stand, base: Histories, end: str) -> Stand:
     """Set what follows from the burn: the fuel that is loaded, and the purge line's pressure."""
     fuel = base.trace(s.FUEL)
     until = {

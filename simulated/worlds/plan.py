@@ -45,12 +45,12 @@ def plan(which: str = "quick", count: int = 60) -> list[Test]:
     singles = [inside[i] for _ in range(count) for i in rng.permutation(len(inside))]
     outside = [OUTSIDE[i] for _ in range(count) for i in rng.permutation(len(OUTSIDE))]
     kinds = [kind for _ in range(-(-count // 60)) for kind in _spread()][:count]
-    stands = [(e, log) for _ in range(count) for e, log in _round(rng)]
+    of = [(e, log) for _ in range(count) for e, log in stands(rng)]
     tests = []
     for i, kind in enumerate(kinds):
         names = {"none": 0, "single": 1, "outside": 1, "pair": 2}[kind]
         effects = tuple((outside if kind == "outside" else singles).pop(0) for _ in range(names))
-        engine, logger = stands[i]
+        engine, logger = of[i]
         low, high = np.log(TARGETS)
         end = "late" if "fuel_sliver" in effects else str(rng.choice(ENDS, p=(0.4, 0.2, 0.2, 0.2)))
         tests.append(
@@ -74,7 +74,7 @@ def _spread() -> list[str]:
     return [kind for _, kind in sorted(places)]
 
 
-def _round(rng: np.random.Generator) -> list[tuple[str, str]]:
+def stands(rng: np.random.Generator) -> list[tuple[str, str]]:
     """Every engine by every logger once."""
     among = [(engine, logger) for engine in ENGINES for logger in LOGGERS]
     return [among[i] for i in rng.permutation(len(among))]

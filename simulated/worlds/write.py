@@ -15,9 +15,10 @@ import pandas as pd
 from simulated.blind import sensors as se
 from simulated.blind import slots as s
 from simulated.blind.build import Built
-from simulated.blind.effects import EFFECTS, drawn, named_shape
+from simulated.blind.effects import EFFECTS, Hidden, drawn, named_shape
 from simulated.blind.kernel import STEP
 from simulated.blind.plan import Case
+from simulated.blind.stand import Stand
 from simulated.blind.write import column, document
 from simulated.worlds import engines, laws, loggers
 from simulated.worlds.hidden import observed, sized
@@ -36,29 +37,52 @@ def write_test(test: Test, root: Path, fade: tuple[float, float] | None = None) 
     stand = engines.drawn(rng, test.engine, test.end, world)
     with_ = loggers.drawn(rng, logger, stand)
     sizes = [sized(stand, world, drawn(EFFECTS[n], rng), test.target, logger, with_) for n in test.effects]
-    hidden = tuple(h for h, _ in sizes)
-    channels, true = observed(stand, world, hidden, (world.tank_table(), world.gas_table()))
-    log = loggers.written(rng, stand, true, channels, logger, with_)
-    left = max(stand.fuel_mass - float(true.trace(s.FUEL).sum()) * STEP, 0.0)
-    weighed = {"oxidizer_mass": stand.mass + float(rng.normal(0.0, 0.01)),
-               "fuel_mass_after": max(left + float(rng.normal(0.0, 0.003)), 0.0)}  # fmt: skip
     case = Case(test.id, test.kind, test.effects, test.target, test.logger, test.seed, test.seed)
-    built = Built(case, stand, _none(), hidden, true, channels, log, {}, weighed)
-    folder = root / "raw_tests" / test.id
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "test.toml").write_text(document(built), encoding="utf-8")
-    frame = pd.DataFrame({"Time (s)": [f"{t:.4f}" for t in log.time]})
-    for i, name in enumerate(s.CHANNELS):
-        frame[column(name)] = log.values[:, i]
-    frame.to_csv(folder / "log.csv", index=False, float_format="%.4f", lineterminator="\n")
-    _answer(test, root, {
+    made = fired(rng, case, stand, world, tuple(h for h, _ in sizes), logger, with_)
+    true = made.true
+    put(made, {
+        "id": test.id, "kind": test.kind, "engine": test.engine, "logger": test.logger, "end": test.end,
         "effects": {h.effect.name: {"strength": h.strength, "unit": h.effect.unit, "d_prime": d,
                                     "inside_library": h.effect.inside, "equations": list(h.effect.equations),
                                     "shape": named_shape(h.shape)} for h, d in sizes},
         "laws": world.names, "fade": [float(world.laws[i]) for i in (laws.TAIL, laws.MIXING)],
         "t_v": true.t_v, "t_fuel_out": true.t_fuel_out if np.isfinite(true.t_fuel_out) else None,
-        "truth": {"C_i": stand.C_i, "K_loss": stand.K_loss, "m": stand.m, "a": stand.a, "n": stand.n},
-    })  # fmt: skip
+        "truth": constants(stand),
+    }, root)  # fmt: skip
+
+
+def constants(stand: Stand) -> dict[str, float]:
+    """What a test would find of a stand where its laws are the model's."""
+    return {"C_i": stand.C_i, "K_loss": stand.K_loss, "m": stand.m, "a": stand.a, "n": stand.n}
+
+
+def fired(
+    rng: np.random.Generator, case: Case, stand: Stand, world: laws.World, hidden: tuple[Hidden, ...],
+    logger: loggers.Logger, with_: loggers.Sensors,
+) -> Built:  # fmt: skip
+    """A test as it went, its log, and what was weighed before and after."""
+    channels, true = observed(stand, world, hidden, (world.tank_table(), world.gas_table()))
+    log = loggers.written(rng, stand, true, channels, logger, with_)
+    left = max(stand.fuel_mass - float(true.trace(s.FUEL).sum()) * STEP, 0.0)
+    weighed = {"oxidizer_mass": stand.mass + float(rng.normal(0.0, 0.01)),
+               "fuel_mass_after": max(left + float(rng.normal(0.0, 0.003)), 0.0)}  # fmt: skip
+    return Built(case, stand, _none(), hidden, true, channels, log, {}, weighed)
+
+
+def put(made: Built, answer: dict[str, object], root: Path, rocket: str = "") -> None:
+    """A test's folder, with the section of its ``rocket``; the answer comes last, whole."""
+    folder = root / "raw_tests" / made.case.id
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "test.toml").write_text(document(made) + rocket, encoding="utf-8")
+    frame = pd.DataFrame({"Time (s)": [f"{t:.4f}" for t in made.log.time]})
+    for i, name in enumerate(s.CHANNELS):
+        frame[column(name)] = made.log.values[:, i]
+    frame.to_csv(folder / "log.csv", index=False, float_format="%.4f", lineterminator="\n")
+    path = answer_path(made.case.id, root)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(f".{os.getpid()}.part")
+    part.write_text(json.dumps(answer, indent=1), encoding="utf-8")
+    os.replace(part, path)
 
 
 def _none() -> se.Instruments:
@@ -66,18 +90,9 @@ def _none() -> se.Instruments:
     return se.Instruments("worlds", (), se.Oscillation(50.0, 5.0, 0.0, 0.0), 0.0, 20.0, 0, 0)
 
 
-def _answer(test: Test, root: Path, found: dict[str, object]) -> None:
-    path = answer_path(test, root)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(f".{os.getpid()}.part")
-    stated = {"id": test.id, "kind": test.kind, "engine": test.engine, "logger": test.logger, "end": test.end}
-    part.write_text(json.dumps(stated | found, indent=1), encoding="utf-8")
-    os.replace(part, path)
-
-
-def answer_path(test: Test, root: Path) -> Path:
+def answer_path(name: str, root: Path) -> Path:
     """Where the answer to a test lies."""
-    return root / "answers" / f"{test.id}.json"
+    return root / "answers" / f"{name}.json"
 
 
 def main() -> None:
@@ -88,7 +103,7 @@ def main() -> None:
     parser.add_argument("--limit", type=int, default=60)
     given = parser.parse_args()
     for test in plan(given.set, max(given.limit, 60))[: given.limit]:
-        if not answer_path(test, given.out).is_file():
+        if not answer_path(test.id, given.out).is_file():
             write_test(test, given.out)
             print(test.id, test.kind, "+".join(test.effects), test.engine, test.logger, test.end, flush=True)
 

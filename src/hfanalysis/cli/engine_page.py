@@ -12,14 +12,14 @@ from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.record.published import TABLES, published
 from hfanalysis.report.engine_page import EngineMaterial, Published, engine_page
 from hfanalysis.simulation import plots, steady_run, study, write
-from hfanalysis.simulation.unsteady_run import Simulation, on_other_days
+from hfanalysis.simulation.unsteady_run import Simulation
 
 
 def write_page(out: Path, file: EngineFile, found: Simulation) -> None:
     """Write ENGINE.html to ``out``; with the steady design and its study, where the file asks for one."""
     flown = found.flown
     design, charts = _design(file)
-    days = on_other_days(found)
+    days = found.on_other_days
     page = engine_page(
         EngineMaterial(
             found.product,

@@ -114,7 +114,7 @@ def scatter_of(bases: Sequence[Base]) -> dict[str, Scatter]:
     A further test differs from the mean of k tests by s sqrt(1 + 1/k), which is what is drawn; s that is of these tests
     has Student's distribution with k - 1 degrees of freedom.
     """
-    return {name: _scatter(values) for name, values in _logs(bases).items()}
+    return {name: _scatter(values) for name, values in logs_of([base.found.calibration for base in bases]).items()}
 
 
 def _scatter(values: list[float]) -> Scatter:
@@ -127,9 +127,8 @@ def _scatter(values: list[float]) -> Scatter:
     return Scatter(std=std, drawn=std * sqrt(1.0 + 1.0 / k), freedom=freedom, source=source)
 
 
-def _logs(bases: Sequence[Base]) -> dict[str, list[float]]:
-    """ln C_i, and ln of the rate at one flux, of every test."""
-    found = [base.found.calibration for base in bases]
+def logs_of(found: Sequence[Calibration]) -> dict[str, list[float]]:
+    """ln C_i, and ln of the regression rate at one flux, of every test of a stand."""
     fluxes = [c.regression.reference_flux for c in found]
     known = [log(flux.value) for flux in fluxes if flux is not None and flux.value]
     flux = sum(known) / len(known) if known else 0.0
@@ -171,7 +170,7 @@ class Change:
 
 def to_mean(bases: Sequence[Base]) -> list[dict[str, float]]:
     """ln of what takes each test's C_i and regression rate to the mean of all [-], by name."""
-    logs = _logs(bases)
+    logs = logs_of([base.found.calibration for base in bases])
     return [{name: float(np.mean(own)) - own[i] for name, own in logs.items()} for i in range(len(bases))]
 
 

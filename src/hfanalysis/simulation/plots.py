@@ -104,13 +104,21 @@ def study_charts(flows: Sequence[FlowPoint], mixtures: Sequence[MixturePoint]) -
 
 def over_temperature(found: OverTemperature) -> Chart | None:
     """How numbers change with the day, in percent of those at the stated temperature; None where that has none."""
-    lines = [
-        Series(NAMES[name], STYLES[i % len(STYLES)], found.temperature, 100.0 * (of / found.stated[name] - 1.0))
-        for i, (name, of) in enumerate(found.numbers.items())
-        if np.isfinite(found.stated[name])
+    days, known = found.temperature, [name for name, own in found.stated.items() if np.isfinite(own)]
+
+    def change(name: str, of: Array) -> Array:
+        return 100.0 * (of / found.stated[name] - 1.0)
+
+    styles = {name: STYLES[i % len(STYLES)] for i, name in enumerate(found.numbers)}
+    lines = [Series(NAMES[name], styles[name], days, change(name, found.numbers[name])) for name in known]
+    within = [
+        Series(f"{NAMES[name]}, 95 %", styles[name], days, change(name, low), "band", change(name, high))
+        for name, (low, high) in found.bands.items()
+        if name in known
     ]
     title = "Against the temperature of the tank"
-    return _across("temperature", title, ("change", "%"), "temperature of the tank [degC]", lines) if lines else None
+    about, axis = ("change", "%"), "temperature of the tank [degC]"
+    return _across("temperature", title, about, axis, [*within, *lines]) if lines else None
 
 
 def _across(key: str, title: str, about: tuple[str, str], x_label: str, lines: Sequence[Series]) -> Chart:

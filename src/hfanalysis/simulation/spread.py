@@ -198,21 +198,33 @@ class Bands:
 def bands(file: EngineFile, effects: Adopted, command: str, count: int = DRAWS, seed: int = SEED) -> Bands:
     """Draw ``count`` engines, with ``effects`` in the model, burn and fly them; ``command``: who asks."""
     found = draw(with_tank_as_built(file, command), count, seed)
-    rng = np.random.default_rng([seed, 1])
-    made = [engine_of(one, command) for one in found.files]
-    there = [i for i, one in enumerate(made) if isinstance(one, Engine)]
-    engines = [replace(one, effects=effects.drawn(effects.acting, rng)) for one in made if isinstance(one, Engine)]
-    burns = burn_many(engines)
-    with ThreadPoolExecutor(processors()) as pool:
-        jobs = [(found.files[i].file, e, b) for i, e, b in zip(there, engines, burns, strict=True)]
-        rows = list(pool.map(lambda job: numbers_of(*job), jobs))
-    engine, flight, beside = (table([row[k] for row in rows], there, count) for k in range(3))
-    refused = count - sum(row[0] != {} for row in rows)
+    engine, flight, beside = run(found.files, effects, np.random.default_rng([seed, 1]), command)
+    refused = int(np.isnan(engine[next(iter(engine))]).sum()) if engine else count
     target = file.design.target_apogee.value if file.design.target_apogee else None
     chances = _chances(flight.get("apogee"), flight.get("rail_departure_velocity"), beside.get("stiffness"), target)
     made_of = budgets(engine | flight, ASKED, found)
     product = Spread(draws=count, refused=refused, seed=seed, inputs=found.stated, chances=chances, budget=made_of)
     return Bands(spreads(engine), spreads(engine | flight), product)
+
+
+def run(
+    files: Sequence[DrawnFile], effects: Adopted, rng: np.random.Generator | None, command: str
+) -> tuple[dict[str, Array], dict[str, Array], dict[str, Array]]:
+    """Numbers [SI] by name, (n,) each, of the engines of n drawn files, of their flights, and beside them; NaN where
+    there is none. ``rng`` draws the effects within what is known of their sizes; without it they are as adopted."""
+    made = [engine_of(one, command) for one in files]
+    there = [i for i, one in enumerate(made) if isinstance(one, Engine)]
+    engines = [
+        replace(one, effects=effects.acting if rng is None else effects.drawn(effects.acting, rng))
+        for one in made
+        if isinstance(one, Engine)
+    ]
+    burns = burn_many(engines)
+    with ThreadPoolExecutor(processors()) as pool:
+        jobs = [(files[i].file, e, b) for i, e, b in zip(there, engines, burns, strict=True)]
+        rows = list(pool.map(lambda job: numbers_of(*job), jobs))
+    engine, flight, beside = (table([row[k] for row in rows], there, len(files)) for k in range(3))
+    return engine, flight, beside
 
 
 def budgets(found: Mapping[str, Array], asked: Sequence[str], drawn: Draws) -> dict[str, Budget]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,12 @@ class Simulation:
         burnt = replace(self.burnt, time=np.linspace(0.0, float(self.burnt.time[-1]), points))
         return replace(self, burnt=burnt, chamber_temperature=burnt.chamber_temperature())
 
+    @cached_property
+    def on_other_days(self) -> OverTemperature:
+        """The engine over the temperature of its tank; with bands where its numbers have them."""
+        drawn = {} if self.product.spread is not None else {"drawn": 0}
+        return over_temperature(self.file, self.adopted, COMMAND, **drawn)
+
 
 def simulate(file: EngineFile, until: float | None = None, draws: int = 0) -> Simulation:
     """Run the unsteady model of an engine file, to burn-out or on through cold gas ``until`` [s].
@@ -97,11 +104,6 @@ def effects_of(file: EngineFile) -> Adopted:
     if not file.effects:
         return Adopted()
     return effects_in(file.effects, file.path, library_of(file.path, file.effects))
-
-
-def on_other_days(found: Simulation) -> OverTemperature:
-    """The engine over the temperature of its tank."""
-    return over_temperature(found.file, found.adopted, COMMAND)
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:

@@ -21,7 +21,7 @@ from hfanalysis.simulation import motor, plots, study
 from hfanalysis.simulation.flown import held
 from hfanalysis.simulation.steady_run import DesignRun
 from hfanalysis.simulation.study import FlowPoint, MixturePoint
-from hfanalysis.simulation.unsteady_run import Simulation, on_other_days
+from hfanalysis.simulation.unsteady_run import Simulation
 from hfanalysis.steady_design.steady import SteadyEngine
 
 STATES = {
@@ -66,15 +66,20 @@ def simulation(out: Path, simulation: Simulation) -> None:
     write_table(out / "histories.csv", list(table), np.column_stack(list(table.values())).tolist())
     for name, text in plots.simulation(table):
         write_text(out / name, text)
-    days = on_other_days(simulation)
-    columns = ["temperature [degC]", *(f"{key} [{OVER_TEMPERATURE[key]}]" for key in days.numbers)]
-    write_table(out / "temperature.csv", columns, np.column_stack([days.temperature, *days.numbers.values()]).tolist())
-    name, found = file_name(simulation.file), simulation.flown
-    if isinstance(found, str):
+    days = simulation.on_other_days
+    ends = {
+        f"{key}_{end}": of for key, both in days.bands.items() for end, of in zip(("low", "high"), both, strict=True)
+    }
+    units = {key: OVER_TEMPERATURE[key.removesuffix("_low").removesuffix("_high")] for key in [*days.numbers, *ends]}
+    columns = ["temperature [degC]", *(f"{key} [{unit}]" for key, unit in units.items())]
+    found = [days.temperature, *days.numbers.values(), *ends.values()]
+    write_table(out / "temperature.csv", columns, np.column_stack(found).tolist())
+    name, flown = file_name(simulation.file), simulation.flown
+    if isinstance(flown, str):
         points, said = motor.standing(simulation.file, simulation.engine)
         write_text(out / f"{name}_static.eng", motor.alone(simulation, points, said))
         return
-    _flight(out, name, simulation, found)
+    _flight(out, name, simulation, flown)
 
 
 def _flight(out: Path, name: str, simulation: Simulation, found: Flown) -> None:
