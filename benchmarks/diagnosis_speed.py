@@ -2,8 +2,9 @@
 
 python -m benchmarks.diagnosis_speed [--revision 26fccde] [--repeat 3] [--cases DIR [--only P04,P05]]
 
-The earlier revision is checked out in a temporary folder, with compiled code of its own; both are run once before
-anything is timed, on the replica as that revision had it. CASES holds ``raw_tests/`` with tests of which the median
+The earlier revision is checked out in a temporary folder, with compiled code of its own, and has the libraries that its
+lock names, in .cache/earlier/REVISION; both are run once before anything is timed, on the replica as that revision had
+it. CASES holds ``raw_tests/`` with tests of which the median
 ratio is told; without it HF5 alone is timed. Only the stage itself counts, by the run's own log.
 """
 
@@ -31,22 +32,18 @@ REPLICA, MOST, MOST_OF_CASES = "HF5", 0.45, 0.7
 
 @dataclass(frozen=True)
 class Checkout:
-    """A version of the package with a folder for its products and its compiled code."""
+    """A version of the package, a folder for its products and its compiled code, and a Python with its libraries."""
 
     source: Path
     work: Path
-
-    @property
-    def _path(self) -> str:
-        """Its source first; what else is there may be libraries that only the earlier revision needs."""
-        return os.pathsep.join(filter(None, [str(self.source / "src"), os.environ.get("PYTHONPATH")]))
+    python: str
 
     def seconds(self, root: Path, test: str) -> float:
         """Wall time [s] of the stage."""
         out = self.work / "out"
         threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
-        compiled = {"NUMBA_CACHE_DIR": str(self.work / "compiled"), "PYTHONPATH": self._path}
-        command = [sys.executable, "-m", "hfanalysis", "diagnose", test, "--root", str(root), "--out", str(out)]
+        compiled = {"NUMBA_CACHE_DIR": str(self.work / "compiled"), "PYTHONPATH": str(self.source / "src")}
+        command = [self.python, "-m", "hfanalysis", "diagnose", test, "--root", str(root), "--out", str(out)]
         ended = subprocess.run(
             [*command, "--force", "--quiet"], env=os.environ | threads | compiled, cwd=self.work, text=True,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
@@ -67,6 +64,14 @@ def checked_out(revision: str, folder: Path) -> Iterator[Path]:
         yield folder
     finally:
         subprocess.run([*git, "remove", "--force", str(folder)], check=True, capture_output=True)
+
+
+def python_of(revision: str, source: Path) -> str | None:
+    """A Python with what the lock of a checked-out revision names; None where that cannot be had."""
+    place = ROOT / ".cache" / "earlier" / revision
+    script, lock = ROOT / "pipeline" / "setup.sh", source / "requirements.lock"
+    made = subprocess.run(["sh", str(script), sys.executable, str(place), str(lock)])
+    return str(place / "bin" / "python") if made.returncode == 0 else None
 
 
 def ratio(now: Checkout, earlier: Checkout, root: Path, test: str, repeat: int) -> float:
@@ -98,7 +103,12 @@ def main(given: Sequence[str] | None = None) -> int:
         print(f"diagnosis_speed: this clone has no revision {asked.revision}: nothing to compare with", file=sys.stderr)
         return 0
     with tempfile.TemporaryDirectory() as scratch, checked_out(asked.revision, Path(scratch) / "source") as source:
-        now, earlier = Checkout(ROOT, Path(scratch) / "now"), Checkout(source, Path(scratch) / "earlier")
+        python = python_of(asked.revision, source)
+        if python is None:
+            print(f"diagnosis_speed: the libraries of {asked.revision} cannot be installed here", file=sys.stderr)
+            return 0
+        now = Checkout(ROOT, Path(scratch) / "now", sys.executable)
+        earlier = Checkout(source, Path(scratch) / "earlier", python)
         for one in (now, earlier):
             one.work.mkdir()
             one.seconds(source, REPLICA)

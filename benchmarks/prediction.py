@@ -46,16 +46,18 @@ class Study:
     out: Path | None = None
 
 
-def plan_of(root: Path, test: str, temperature: str) -> Path:
-    """The test.toml of a fired test as it was before: without what the log adds, with the tank's temperature."""
+def plan_of(root: Path, test: str, temperature: str, name: str = "") -> Path:
+    """The test.toml of a fired test as it was before, of another ``name``: without what the log adds, with the tank's
+    temperature."""
     from hfanalysis.record.planned import FIRED
     from hfanalysis.record.written import table_lines
 
     content = tomllib.loads((root / "raw_tests" / test / "test.toml").read_text(encoding="utf-8"))
     content["tank"]["temperature"] = temperature
+    content["test"]["id"] = name or test
     sections = {key: part for key, part in content.items() if key not in FIRED and isinstance(part, dict)}
     lines = [line for key, part in sections.items() for line in table_lines(part, key)]
-    path = root / f"{test}.toml"
+    path = root / f"{name or test}.toml"
     path.write_text("\n".join(["schema = 1", *lines]) + "\n", encoding="utf-8")
     return path
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-import tomllib
 from dataclasses import replace
 from math import log, sqrt
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from benchmarks.prediction import plan_of
 from tests.cli.run import hfa
 
 from hfanalysis.effects import effect
@@ -23,7 +24,6 @@ from hfanalysis.products.disk import read_json, sha256_file
 from hfanalysis.products.prediction import Foretold, Origin, Prediction
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
-from hfanalysis.record.written import table_lines
 from hfanalysis.simulation.foretelling import (
     PRIOR_SCATTER,
     QUANTITIES,
@@ -38,7 +38,6 @@ from hfanalysis.simulation.predict import misses_of, predict, score
 from hfanalysis.units import Value
 
 REPOSITORY = Path(__file__).parents[2]
-AFTER = ("schema", "log", "channels", "observed")
 
 
 @pytest.fixture(scope="module")
@@ -53,17 +52,6 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def base(root: Path) -> Base:
     """HF4, as a test to predict from."""
     return predicting._base(bring("validate", root, "HF4"))
-
-
-def plan_of(root: Path, test: str, temperature: str, name: str = "") -> Path:
-    """A replica's test.toml as it would have been written before the firing."""
-    content = tomllib.loads((root / "raw_tests" / test / "test.toml").read_text())
-    content["tank"]["temperature"] = temperature
-    content["test"]["id"] = name or test
-    lines = [line for key, part in content.items() if key not in AFTER for line in table_lines(part, key)]
-    path = root / f"{name or test}.toml"
-    path.write_text("\n".join(["schema = 1", *lines]) + "\n")
-    return path
 
 
 @pytest.fixture
@@ -187,6 +175,21 @@ def test_a_prediction_is_frozen_with_all_it_was_made_from(root: Path, frozen: tu
     assert day.status == 0
     assert other.temperature.value == pytest.approx(283.15)
     assert (other.predicted["peak_thrust"].value or 0.0) < (product.predicted["peak_thrust"].value or 0.0)
+
+
+def test_a_prediction_is_told_over_the_temperature_of_the_tank(frozen: tuple[Path, str]) -> None:
+    product = Prediction.from_json(read_json(frozen[0]))
+    days = {float(day): of["peak_thrust"] for day, of in product.over_temperature.items()}
+    assert list(days) == [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0]
+    medians = [one.value for one in days.values() if one.value is not None]
+    assert medians == sorted(medians)
+    near = product.predicted["peak_thrust"]
+    assert (near.value, near.low, near.high) == pytest.approx(
+        (days[25.0].value, days[25.0].low, days[25.0].high), rel=0.05
+    )
+    picture = ElementTree.parse(frozen[0].with_suffix(".svg")).getroot()
+    bands = [one for one in picture.iter("{http://www.w3.org/2000/svg}path") if "band" in one.get("class", "")]
+    assert len(bands) == 5
 
 
 def test_a_score_lays_the_test_over_it(root: Path, frozen: tuple[Path, str]) -> None:

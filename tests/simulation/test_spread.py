@@ -15,6 +15,7 @@ from hfanalysis.products.engines import Simulated
 from hfanalysis.record.document import read_toml
 from hfanalysis.record.engine_file import EngineFile, engine_of
 from hfanalysis.simulation import spread, steady_run
+from hfanalysis.simulation.over_temperature import over_temperature
 from hfanalysis.simulation.unsteady_run import simulate
 
 
@@ -142,3 +143,18 @@ def test_a_name_that_is_no_constant_of_the_engine_is_refused() -> None:
     errors = {"names": ["weather"], "std": [1.0], "correlation": [[1.0]]}
     with pytest.raises(InputError, match=r"covariance\.names: found 'weather'"):
         found(20, covariance=errors)
+
+
+def test_what_the_file_states_with_an_error_makes_bands_over_the_temperature() -> None:
+    loose = file(injector__C_i="1.0 +/- 0.05")
+    days = over_temperature(loose, Adopted(), "hfa simulate", drawn=40)
+    fits = days.temperature < 31.0  # beyond, its load fills the tank with liquid
+    for name in ("peak_thrust", "peak_chamber_pressure", "apogee"):
+        low, high = days.bands[name]
+        assert (low[fits] < days.numbers[name][fits]).all()
+        assert (days.numbers[name][fits] < high[fits]).all()
+        assert np.isnan(low[~fits]).all()
+    low, high = (np.interp(25.0, days.temperature, end) for end in days.bands["peak_thrust"])
+    ends = [found(0, injector__C_i=value).peak_thrust.value or 0.0 for value in ("0.9", "1.1")]
+    assert high - low == pytest.approx(ends[1] - ends[0], rel=0.3)  # two deviations to either side
+    assert over_temperature(loose, Adopted(), "hfa simulate", drawn=0).bands == {}

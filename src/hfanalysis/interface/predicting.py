@@ -9,7 +9,7 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.interface.bringing import bring
 from hfanalysis.interface.of_test import engine_of_test
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.disk import fsync, make_folder, read_json, sha256_file, temporary_path, to_json
+from hfanalysis.products.disk import atomic, fsync, make_folder, read_json, sha256_file, temporary_path, to_json
 from hfanalysis.products.flight import Flight
 from hfanalysis.products.prediction import Origin, Prediction, Score
 from hfanalysis.products.segments import Segments
@@ -18,6 +18,7 @@ from hfanalysis.progress import Progress, silent
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.planned import load_planned
 from hfanalysis.record.schema import unsafe
+from hfanalysis.simulation import plots
 from hfanalysis.simulation import predict as model
 from hfanalysis.simulation.foretelling import Base
 from hfanalysis.stages.base import Context
@@ -49,6 +50,8 @@ def predict(
 ) -> tuple[Path, str]:
     """Freeze what a planned test will measure, as ``hfa predict``; returns the file and its SHA-256.
 
+    Beside it a picture of it over the temperature of the tank is written.
+
     Args:
         plan: a test.toml without its log.
         tests: fired tests, the last of which is "last time".
@@ -70,6 +73,8 @@ def predict(
     origins = {context.id: _origin(context, base) for context, base in zip(contexts, bases, strict=True)}
     found = model.predict(stated, bases, origins, temperature, draws)
     _freeze(path, to_json(found))
+    with atomic(path.with_suffix(".svg")) as scratch:
+        scratch.write_text(plots.prediction(found), encoding="utf-8")
     return path, sha256_file(path)
 
 

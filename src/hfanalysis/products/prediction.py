@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from hfanalysis.products.model import Is, Notes, Part
@@ -50,6 +51,10 @@ class Prediction(Part):
     injector_area: Annotated[Quantity, Is("of the planned holes", "m^2")]
     band: Annotated[float, Is("share of the draws within low and high", "")]
     predicted: Annotated[dict[str, Foretold], Is("by quantity")]
+    over_temperature: Annotated[
+        Mapping[str, dict[str, Foretold]],
+        Is("the same, of fewer draws, with the tank at another temperature; by that temperature", "degC"),
+    ] = {}
     rivals: Annotated[dict[str, dict[str, Quantity]], Is("what others say: as_last_time, without_effects")]
     scatter: Annotated[dict[str, Scatter], Is("between tests of a stand, by constant")]
     misses: Annotated[dict[str, float], Is("rms of ln(measured over model) in the tests, drawn on top", "")]

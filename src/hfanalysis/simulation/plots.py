@@ -15,6 +15,7 @@ from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.envelope import Envelope
 from hfanalysis.charts.style import sheet
 from hfanalysis.flight.histories import Flown
+from hfanalysis.products.prediction import Prediction
 from hfanalysis.simulation.over_temperature import NAMES, OverTemperature
 from hfanalysis.simulation.study import FlowPoint, MixturePoint
 from hfanalysis.steady_design.steady import SteadyEngine
@@ -32,12 +33,13 @@ _DOWN = {"drogue": "under the drogue", "main": "under the main", "ballistic": "w
 
 @dataclass(frozen=True)
 class PlottedCurve:
-    """A named line; ``style`` picks its color, else it takes the next one."""
+    """A named line, within a band where it has one; ``style`` picks its color, else it takes the next one."""
 
     x: Array
     y: Array
     name: str
     style: str = ""
+    band: tuple[Array, Array] | None = None
 
 
 def simulation(table: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
@@ -121,6 +123,23 @@ def over_temperature(found: OverTemperature) -> Chart | None:
     return _across("temperature", title, about, axis, [*within, *lines]) if lines else None
 
 
+def prediction(found: Prediction) -> str:
+    """What is predicted over the temperature of the tank, in percent of what is at the planned one, with its bands."""
+    days = np.array([float(day) for day in found.over_temperature])
+    curves = []
+    for name, words in NAMES.items():
+        here, told = found.predicted[name].value, [of[name] for of in found.over_temperature.values()]
+        if here is None or all(one.value is None for one in told):
+            continue
+        low, middle, high = (
+            100.0 * (np.array([np.nan if value is None else value for value in values]) / here - 1.0)
+            for values in zip(*((one.low, one.value, one.high) for one in told), strict=True)
+        )
+        curves.append(PlottedCurve(days, middle, words, band=(low, high)))
+    title = f"{found.name} against the temperature of the tank, with bands of {100.0 * found.band:.0f} %"
+    return chart(title, "temperature of the tank [degC]", "change [%]", curves)
+
+
 def _across(key: str, title: str, about: tuple[str, str], x_label: str, lines: Sequence[Series]) -> Chart:
     drawn = tuple(line for line in lines if line.finite)
     span = around([line.time for line in lines])
@@ -157,11 +176,12 @@ def _by_pressure(mixtures: Sequence[MixturePoint]) -> Iterator[Series]:
 def chart(title: str, x_label: str, y_label: str, curves: Sequence[PlottedCurve], with_zero: bool = True) -> str:
     """One chart as an SVG document with its own style sheet."""
     xs = np.concatenate([curve.x for curve in curves])
-    plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range([c.y for c in curves], with_zero))
+    ys = [values for curve in curves for values in (curve.y, *(curve.band or ()))]
+    plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range(ys, with_zero))
     svg.axes(plot, x_label, y_label)
     colors = cycle(STYLES)
     for curve in curves:
-        data = Envelope(curve.x, curve.y, curve.y, curve.y)
+        data = Envelope(curve.x, curve.y, *(curve.band or (curve.y, curve.y)))
         svg.line(plot, data, curve.style or next(colors), curve.name)
     drawn = str(svg.render(plot, "chart", title, f"{y_label} over {x_label}"))
     head, body = drawn.split(">", 1)

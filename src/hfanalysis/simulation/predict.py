@@ -30,6 +30,13 @@ tenth of their width."""
 ENOUGH = 0.9
 """Share of the draws that have to have a quantity for a band of it [-]. Source: by choice, as the band's."""
 
+DAYS = (5, 10, 15, 20, 25, 30, 35)
+"""Temperatures of the tank [degC] at which the prediction is told beside the planned one: from a spring morning to a
+desert's noon. Source: by choice; nitrous oxide is critical at 36.4."""
+
+OF_A_DAY = 100
+"""Engines drawn at each of them. Source: by choice: a picture asks for less than a number."""
+
 LAST, BARE = "as_last_time", "without_effects"
 """The rivals: what the last test measured, and the model without effects."""
 
@@ -51,12 +58,13 @@ def predict(
     """
     _check(plan, bases, origins)
     plans = [planned(plan, base, temperature=temperature) for base in bases]
-    scatter = scatter_of(bases)
-    table = _drawn(plan, bases, plans, draws, seed)
     misses = misses_of(bases)
+    table = _drawn(plan, bases, plans, misses, draws, seed)
     refused = int(np.isnan(table[:, 0]).sum())
-    noise = np.random.default_rng([seed, 1]).standard_normal(table.shape)
-    table *= np.exp(noise * np.array([misses.get(name, 0.0) for name in QUANTITIES]))
+    days = {}
+    for celsius in DAYS if draws else ():
+        on = [planned(plan, base, temperature=f"{celsius} degC") for base in bases]
+        days[str(celsius)] = _bands(_drawn(plan, bases, on, misses, min(draws, OF_A_DAY), seed))
     file = plans[-1].file
     tank = file.tank
     return Prediction(
@@ -66,9 +74,10 @@ def predict(
         oxidizer_mass=_stated(tank.oxidizer_mass, "kg"),
         injector_area=_stated(file.injector.area, "m^2"),
         band=BAND,
-        predicted={name: _band(table[:, i], unit) for i, (name, unit) in enumerate(QUANTITIES.items())},
+        predicted=_bands(table),
+        over_temperature=days,
         rivals={LAST: dict(bases[-1].measured), BARE: _without(plan, bases, temperature)},
-        scatter=scatter,
+        scatter=scatter_of(bases),
         misses=misses,
         draws=draws,
         refused=refused,
@@ -89,15 +98,20 @@ def _check(plan: PlannedTest, bases: Sequence[Base], origins: Mapping[str, Origi
         raise InputError(f"{plan.path}: the tests were calibrated under different conventions; expected one")
 
 
-def _drawn(plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned], draws: int, seed: int) -> Array:
-    """Outcomes of all draws, (draws, quantities); each test has its share of them."""
+def _drawn(
+    plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned], misses: Mapping[str, float], draws: int,
+    seed: int,
+) -> Array:  # fmt: skip
+    """Outcomes of all draws, (draws, quantities), off by what the model ``misses``; each test has its share of them."""
     scatter, stands, flying = scatter_of(bases), list[Engine](), list[Engine]()
     for i, (base, own, shift) in enumerate(zip(bases, plans, to_mean(bases), strict=True)):
         count = len(range(i, draws, len(bases)))
         for change in changes(base, own, scatter, count, seed + i, shift):
             stands.append(change.of(own.stand))
             flying += [change.of(own.flying)] if own.flying is not None else []
-    return outcomes(stands, flying, _rail(plan))
+    table = outcomes(stands, flying, _rail(plan))
+    noise = np.random.default_rng([seed, 1]).standard_normal(table.shape)
+    return np.asarray(table * np.exp(noise * np.array([misses.get(name, 0.0) for name in QUANTITIES])))
 
 
 def _rail(plan: PlannedTest) -> float | None:
@@ -107,6 +121,10 @@ def _rail(plan: PlannedTest) -> float | None:
 def _stated(value: object, unit: str) -> Quantity:
     found, std = getattr(value, "value", None), getattr(value, "std", None)
     return Quantity.absent("not stated") if found is None else Quantity(found, unit, std)
+
+
+def _bands(table: Array) -> dict[str, Foretold]:
+    return {name: _band(table[:, i], unit) for i, (name, unit) in enumerate(QUANTITIES.items())}
 
 
 def _band(values: Array, unit: str) -> Foretold:
