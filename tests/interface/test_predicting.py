@@ -189,7 +189,18 @@ def test_a_prediction_is_told_over_the_temperature_of_the_tank(frozen: tuple[Pat
     )
     picture = ElementTree.parse(frozen[0].with_suffix(".svg")).getroot()
     bands = [one for one in picture.iter("{http://www.w3.org/2000/svg}path") if "band" in one.get("class", "")]
-    assert len(bands) == 5
+    assert len(bands) == 4  # impulse, both peaks, apogee
+
+
+def test_a_load_that_does_not_fit_on_a_hot_day_has_no_band_there(root: Path, base: Base) -> None:
+    path = plan_of(root, "HF5", "20 degC", "full")
+    path.write_text(path.read_text().replace('oxidizer_mass = "8.350', 'oxidizer_mass = "10.9'))
+    origins = {"HF4": Origin(raw={}, test_toml="", products={}, effects=())}
+    days = predict(load_planned(path), [base], origins, draws=20).over_temperature
+    assert days["5"]["total_impulse"].value is not None
+    hot = days["35"]["total_impulse"]
+    assert hot.value is None
+    assert "expected" in (hot.reason or "")
 
 
 def test_a_score_lays_the_test_over_it(root: Path, frozen: tuple[Path, str]) -> None:

@@ -128,6 +128,8 @@ def prediction(found: Prediction) -> str:
     days = np.array([float(day) for day in found.over_temperature])
     curves = []
     for name, words in NAMES.items():
+        if name == "burn_time":
+            continue  # its band is as wide at every temperature, and hides the others
         here, told = found.predicted[name].value, [of[name] for of in found.over_temperature.values()]
         if here is None or all(one.value is None for one in told):
             continue
@@ -177,7 +179,8 @@ def chart(title: str, x_label: str, y_label: str, curves: Sequence[PlottedCurve]
     """One chart as an SVG document with its own style sheet."""
     xs = np.concatenate([curve.x for curve in curves])
     ys = [values for curve in curves for values in (curve.y, *(curve.band or ()))]
-    plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range(ys, with_zero))
+    span, values = (float(xs.min()), float(xs.max())), svg.value_range(ys, with_zero)
+    plot = svg.new_plot(span, values, names=[curve.name for curve in curves])
     svg.axes(plot, x_label, y_label)
     colors = cycle(STYLES)
     for curve in curves:

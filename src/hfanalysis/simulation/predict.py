@@ -61,10 +61,9 @@ def predict(
     misses = misses_of(bases)
     table = _drawn(plan, bases, plans, misses, draws, seed)
     refused = int(np.isnan(table[:, 0]).sum())
-    days = {}
-    for celsius in DAYS if draws else ():
-        on = [planned(plan, base, temperature=f"{celsius} degC") for base in bases]
-        days[str(celsius)] = _bands(_drawn(plan, bases, on, misses, min(draws, OF_A_DAY), seed))
+    days = {
+        str(celsius): _of_a_day(plan, bases, f"{celsius} degC", misses, min(draws, OF_A_DAY), seed) for celsius in DAYS
+    }
     file = plans[-1].file
     tank = file.tank
     return Prediction(
@@ -112,6 +111,18 @@ def _drawn(
     table = outcomes(stands, flying, _rail(plan))
     noise = np.random.default_rng([seed, 1]).standard_normal(table.shape)
     return np.asarray(table * np.exp(noise * np.array([misses.get(name, 0.0) for name in QUANTITIES])))
+
+
+def _of_a_day(
+    plan: PlannedTest, bases: Sequence[Base], temperature: str, misses: Mapping[str, float], draws: int, seed: int
+) -> dict[str, Foretold]:
+    """Bands with the tank at another temperature; with the reason where the load does not fit it there."""
+    try:
+        plans = [planned(plan, base, temperature=temperature) for base in bases]
+    except InputError as error:
+        reason = str(error)
+        return {n: Foretold(value=None, low=None, high=None, unit=u, reason=reason) for n, u in QUANTITIES.items()}
+    return _bands(_drawn(plan, bases, plans, misses, draws, seed))
 
 
 def _rail(plan: PlannedTest) -> float | None:
