@@ -16,8 +16,8 @@ import hashlib
 import json
 import sys
 import tempfile
-from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -133,17 +133,39 @@ def blind_case(folder: Path) -> dict[str, Any]:
     return {"case": folder.name, "truth": truth, "found": recover(folder)}
 
 
+@dataclass(frozen=True)
+class Study:
+    """Cases by name, and what is done with each."""
+
+    root: Path
+    cases: Mapping[str, Any]
+    work: Callable[[Any], dict[str, Any]]
+    out: Path | None = None
+
+
+def run_one(name: str, study: Study) -> dict[str, Any]:
+    """What is found in one case."""
+    return study.work(study.cases[name])
+
+
 def run(name: str, cases: Iterable[Any], work: Any, processes: int) -> list[dict[str, Any]]:
     """Work through the cases that have no result yet; every result is written as soon as it is there."""
+    from hfanalysis.campaign.cluster import Cluster
+
     CACHE.mkdir(exist_ok=True)
     path = CACHE / f"recovery-{name}-{_code()}.jsonl"
     done = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
     asked = {str(c if isinstance(c, int) else c.name): c for c in cases}
     done = [r for r in done if str(r["case"]) in asked]
     known = {str(r["case"]) for r in done}
-    todo = [c for name, c in asked.items() if name not in known]
-    with path.open("a") as file, ProcessPoolExecutor(processes) as pool:
-        for result in track(pool.map(work, todo), f"{name} logs", len(todo), console=Console(stderr=True)):
+    todo = {name: c for name, c in asked.items() if name not in known}
+    if not todo:
+        return done
+    with path.open("a") as file, Cluster(processes) as cluster:
+        found = cluster.each(run_one, list(todo), Study(CACHE, todo, work))
+        for test, result in track(found, f"{name} logs", len(todo), console=Console(stderr=True)):
+            if isinstance(result, str):
+                raise SystemExit(f"{test}: {result}")
             file.write(json.dumps(result) + "\n")
             file.flush()
             done.append(result)

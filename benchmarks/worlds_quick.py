@@ -13,9 +13,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -92,20 +90,31 @@ def found_path(test: Test, root: Path) -> Path:
     return root / "found" / f"{test.id}.json"
 
 
-def run_one(test: Test, root: Path, digest: str) -> tuple[str, float]:
-    """Write a test if it is not there, diagnose it, and keep what was found; its id, and seconds."""
+@dataclass(frozen=True)
+class Study:
+    """Where tests lie, which they are, and of which version what is found is."""
+
+    root: Path
+    tests: tuple[Test, ...]
+    digest: str
+    out: Path | None = None
+
+
+def run_one(name: str, study: Study) -> float:
+    """Write a test if it is not there, diagnose it, and keep what was found; returns seconds."""
     from simulated.worlds.write import answer_path, write_test
 
-    started = perf_counter()
+    started, root = perf_counter(), study.root
+    (test,) = (test for test in study.tests if test.id == name)
     if not answer_path(test.id, root).is_file():
         write_test(test, root)
     with tempfile.TemporaryDirectory() as scratch:
         outcome = diagnosed(root, test.id, Path(scratch))
     path = found_path(test, root)
     path.parent.mkdir(parents=True, exist_ok=True)
-    kept = {"digest": digest, "seconds": outcome.seconds, "failure": outcome.failure, "product": outcome.product}
+    kept = {"digest": study.digest, "seconds": outcome.seconds, "failure": outcome.failure, "product": outcome.product}
     path.write_text(json.dumps(kept), encoding="utf-8")
-    return test.id, perf_counter() - started
+    return perf_counter() - started
 
 
 def fresh(test: Test, root: Path, digest: str) -> bool:
@@ -205,10 +214,13 @@ def main() -> int:
     tests = [t for t in tests if not asked.only or t.id in asked.only.split(",")]
     todo = [t for t in tests if not fresh(t, root, digest)]
     started = perf_counter()
-    with ProcessPoolExecutor(asked.jobs, mp_context=get_context("spawn")) as pool:
-        jobs = [pool.submit(run_one, test, root, digest) for test in todo]
-        for done, job in enumerate(as_completed(jobs), 1):
-            name, seconds = job.result()
+    from hfanalysis.campaign.cluster import Cluster
+
+    with Cluster(asked.jobs) as cluster:
+        found = cluster.each(run_one, [test.id for test in todo], Study(root, tuple(todo), digest))
+        for done, (name, seconds) in enumerate(found, 1):
+            if isinstance(seconds, str):
+                raise SystemExit(seconds)
             (one,) = scored([t for t in todo if t.id == name], root)
             said = ", ".join(f"{n} {p:.2f}" for n, p in one.stated.items()) or one.failure or "none"
             mark = "WRONG" if one.wrong else ("ok" if one.exact else "-")

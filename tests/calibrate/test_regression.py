@@ -9,7 +9,7 @@ import pytest
 from tests.calibrate.engine_sample import TRUTH, engine, evidence, rate
 
 from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
-from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
+from hfanalysis.calibrate.evidence import Evidence, Ports, Scalar, burn_time_of
 from hfanalysis.calibrate.likelihood import effective_samples, surface, weights_from
 from hfanalysis.calibrate.regression import RANGE_N, RANGE_RATE, Fitted, _likeliest, _minimum, fit, fit_together, law_at
 from hfanalysis.calibrate.regression_verdict import result
@@ -225,3 +225,31 @@ def test_a_valley_that_hardly_shows_n_points_at_a_flux_of_the_burn(clear: Fitted
     """And at no number beyond a float's range."""
     steep = replace(clear.surface, points=clear.surface.points * np.array([1e6, 1e-9]) + np.array([0.0, 0.5]))
     assert 0.0 < replace(clear, surface=steep).reference_flux < 1e4
+
+
+def with_ports(test: Evidence, noise: float = 0.0, bias: float = 0.0) -> Evidence:
+    """The same with the port's radius as it was, at twelve times; a bias of half a millimeter is possible."""
+    true = burn(replace(test.engine, a=TRUTH.a, n=TRUTH.n))
+    time = np.linspace(0.6, 0.9 * test.end, 12)
+    scatter = noise * np.random.default_rng(5).standard_normal(time.size)
+    radius = np.interp(time, true.time, true.state("port_radius")) + bias + scatter
+    covariance = test.covariance.copy()
+    covariance[-1, -1] = 5e-4**2
+    return replace(test, ports=Ports(time, radius, max(noise, 1e-5)), covariance=covariance)
+
+
+def test_a_port_measured_while_it_burns_tells_the_law_without_a_burn_time() -> None:
+    blind = replace(evidence(noise=0.1e5), burn_time=None)
+    wide, told = fit([blind]), fit([with_ports(blind, 2e-5)])
+    across = np.array([0.0, 1.0])
+    assert np.ptp(told.surface.interval(across)) < 0.5 * np.ptp(wide.surface.interval(across))
+    assert told.law.n == pytest.approx(TRUTH.n, abs=0.03)
+    assert rate(told.law, 200.0) == pytest.approx(rate(TRUTH, 200.0), rel=0.02)
+
+
+def test_a_bias_of_the_port_s_sensor_is_none_of_the_law() -> None:
+    blind = replace(evidence(noise=0.1e5), burn_time=None)
+    found = fit([with_ports(blind, 2e-5, bias=4e-4)])
+    low, high = found.surface.interval(np.array([0.0, 1.0]))
+    assert low < TRUTH.n < high
+    assert rate(found.law, 200.0) == pytest.approx(rate(TRUTH, 200.0), rel=0.03)

@@ -1,4 +1,4 @@
-"""What one test says about its fuel's regression: chamber pressure, burn time, fuel left; and the model of these.
+"""What one test says about its fuel's regression: chamber pressure, burn time, fuel left, port; and the model of these.
 
 The model is the unsteady engine without any measured input. Its tank starts from the pressure extrapolated from the
 liquid phase, and what the tank's calibration leaves open (loaded mass, injector, feed loss, exponent, sensor biases) is
@@ -21,7 +21,7 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 
 NUISANCES = ("oxidizer_mass", "area", "loss_factor", "exponent", "volume", "tank_pressure", "chamber_pressure",
-             "fuel_mass", "throat_area")  # fmt: skip
+             "fuel_mass", "throat_area", "port_radius")  # fmt: skip
 """What the model takes from elsewhere, in the order of the covariance."""
 
 
@@ -35,14 +35,26 @@ class Scalar:
 
 
 @dataclass(frozen=True)
+class Ports:
+    """Radii of the port [m] at times [s] of the burn, (k,) each, with the scatter [m] of one by its sensor alone."""
+
+    time: Array
+    radius: Array
+    std: float
+
+
+NO_PORTS = Ports(np.zeros(0), np.zeros(0), 1.0)
+
+
+@dataclass(frozen=True)
 class Evidence:
     """One test's evidence.
 
     ``time`` [s] and ``chamber`` [Pa]: block means of the chamber pressure; ``burn_time`` [s]: the fuel is gone;
-    ``fuel_left`` [kg] at ``end`` [s]; ``anchor``: instant [s] and tank pressure [Pa] from which the start is
-    extrapolated; ``covariance`` of NUISANCES [SI], a square matrix; ``least`` [Pa]: scatter of a block mean by the
-    sensor alone; ``wander`` [Pa^2]: covariance of the chamber pressures by the slow wander of their sensor.
-    ``remarks`` say what the fit rests on.
+    ``fuel_left`` [kg] at ``end`` [s]; ``ports``: radii of the port measured while it burnt; ``anchor``: instant [s] and
+    tank pressure [Pa] from which the start is extrapolated; ``covariance`` of NUISANCES [SI], a square matrix;
+    ``least`` [Pa]: scatter of a block mean by the sensor alone; ``wander`` [Pa^2]: covariance of the chamber pressures
+    by the slow wander of their sensor. ``remarks`` say what the fit rests on.
     """
 
     test: str
@@ -57,6 +69,7 @@ class Evidence:
     least: float
     wander: Array
     remarks: tuple[str, ...] = ()
+    ports: Ports = NO_PORTS
     _known: dict[tuple[str, Regression], Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     def _once(self, what: str, law: Regression, find: Callable[[], Array | None]) -> Array | None:
@@ -70,10 +83,10 @@ class Evidence:
 
     @cached_property
     def observed(self) -> Array:
-        """All observations in one vector (n,): chamber pressures [Pa], then burn time [s] and fuel left [kg], as far as
-        there are.
+        """All observations in one vector (n,): chamber pressures [Pa], then burn time [s], fuel left [kg] and radii of
+        the port [m], as far as there are.
         """
-        return np.concatenate((self.chamber, [s.value for s in self.scalars]))
+        return np.concatenate((self.chamber, [s.value for s in self.scalars], self.ports.radius))
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:
@@ -82,8 +95,9 @@ class Evidence:
 
     @property
     def scales(self) -> Array:
-        """Standard deviations of the scalars: burn time [s], fuel left [kg], as far as there are."""
-        return np.array([s.std for s in self.scalars])
+        """Standard deviations of what follows the chamber's pressures: burn time [s], fuel left [kg], radii of the port
+        [m], as far as there are."""
+        return np.array([*(s.std for s in self.scalars), *[self.ports.std] * self.ports.time.size])
 
     def with_regression(self, law: Regression) -> Evidence:
         """The same evidence with the start extrapolated by an engine with this regression."""
@@ -91,12 +105,13 @@ class Evidence:
         return replace(self, engine=starting_for(lit, *self.anchor))
 
     def moved(self, off: Array) -> Evidence:
-        """The same with observations that differ by ``off`` (n,) [Pa, s, kg]."""
-        size = self.time.size
-        scalars = iter(off[size:])
+        """The same with observations that differ by ``off`` (n,) [Pa, s, kg, m]."""
+        size, ports = self.time.size, off.size - self.ports.time.size
+        scalars = iter(off[size:ports])
         times, left = (None if s is None else replace(s, value=s.value + float(next(scalars)))
                        for s in (self.burn_time, self.fuel_left))  # fmt: skip
-        return replace(self, chamber=self.chamber + off[:size], burn_time=times, fuel_left=left)
+        seen = replace(self.ports, radius=self.ports.radius + off[ports:])
+        return replace(self, chamber=self.chamber + off[:size], burn_time=times, fuel_left=left, ports=seen)
 
     def predict(self, law: Regression) -> Array | None:
         """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
@@ -128,9 +143,10 @@ class Evidence:
 
     def _moved(self, law: Regression, name: str, step: float) -> Array | None:
         """The prediction with one nuisance off by ``step``."""
-        if name == "chamber_pressure":
-            found = self.predict(law)
-            return None if found is None else found + step * (np.arange(found.size) < self.time.size)
+        if name in ("chamber_pressure", "port_radius"):
+            found, size = self.predict(law), self.observed.size
+            first, last = (0, self.time.size) if name == "chamber_pressure" else (size - self.ports.time.size, size)
+            return None if found is None else found + step * ((np.arange(size) >= first) & (np.arange(size) < last))
         engine, anchor = replace(self.engine, a=law.a, n=law.n), self.anchor
         if name == "tank_pressure":
             anchor = (anchor[0], anchor[1] + step)
@@ -152,7 +168,7 @@ def _shifted(engine: Engine, name: str, step: float) -> Engine:
 
 
 def predicted(evidence: Evidence, engine: Engine) -> Array | None:
-    """What an ``engine`` would have shown, as ``evidence.observed`` (n,) [Pa, s, kg]; None where it cannot be run."""
+    """What an ``engine`` would have shown, as ``evidence.observed`` (n,) [Pa, s, kg, m]; None where it cannot run."""
     try:
         burnt = burn(engine, longest=evidence.longest)
     except (ValueError, ArithmeticError):
@@ -181,7 +197,7 @@ def _scalars(evidence: Evidence, engine: Engine, burnt: Burn) -> list[float]:
     if evidence.fuel_left is not None:
         radius = float(np.interp(evidence.end, burnt.time, burnt.state("port_radius")))
         out.append(engine.grain.fuel(radius))
-    return out
+    return [*out, *np.interp(evidence.ports.time, burnt.time, burnt.state("port_radius"))]
 
 
 def burn_time_of(engine: Engine, burnt: Burn) -> float:

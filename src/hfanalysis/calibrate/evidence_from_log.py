@@ -10,7 +10,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, exponent, starting_for
-from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar
+from hfanalysis.calibrate.evidence import NO_PORTS, NUISANCES, Evidence, Ports, Scalar
 from hfanalysis.calibrate.head_pressure import before_nozzle_of
 from hfanalysis.calibrate.measured_pressures import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
@@ -28,6 +28,9 @@ BLOCKS = 120
 
 FINEST_CHAMBER_BLOCK = 0.02
 """Shortest block mean of the chamber pressure [s]."""
+
+PORTS, LEAST_PORTS = 20, 3
+"""Means of a measured port radius that are compared, and fewest of them. Source: by choice: a law has two constants."""
 
 BESIDE_END = 0.15
 """Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
@@ -65,16 +68,33 @@ def evidence_of(
     late = abs(t_v - burnt.liquid_out) if burnt.liquid_out is not None else 0.0
     if burn_time is not None:
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
+    ports, sensor = _ports(log, origin, start, end)
     remarks = (
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
         *burning_of(segments, definition)[1],
+        *([f"port_radius, {ports.time.size} means to {ports.time[-1]:.2f} s"] if ports.time.size else []),
         *_remarks(definition, calibration, engine.effects),
     )
-    covariance = covariance_of(draws, calibration, _stated_variances(definition))
+    covariance = covariance_of(draws, calibration, (*_stated_variances(definition), sensor**2))
     return Evidence(
         definition.test.id, first, part.time, part.value, burn_time, fuel_left, end, (start, pressure), covariance,
         chamber.noise / np.sqrt(max(width / chamber.step, 1.0)), _wander(log, segments, part.time), remarks,
+        ports,
     )  # fmt: skip
+
+
+def _ports(log: TestLog, origin: float, start: float, end: float) -> tuple[Ports, float]:
+    """Block means of the port's radius while the fuel burns, and one standard deviation of its sensor's bias [m]."""
+    channel = log.get("port_radius")
+    if channel is None:
+        return NO_PORTS, 0.0
+    seen = Signal.of(channel).shifted(origin).between(start, end - BESIDE_END)
+    width = max((end - start) / PORTS, seen.step)
+    means = seen.reduced(width)
+    if means.time.size < LEAST_PORTS:
+        return NO_PORTS, 0.0
+    std = max(seen.noise / np.sqrt(max(width / seen.step, 1.0)), 0.1 * channel.accuracy)
+    return Ports(means.time, means.value, float(std)), channel.accuracy
 
 
 def _wander(log: TestLog, segments: Segments, time: Array) -> Array:
@@ -163,8 +183,9 @@ def _remarks(definition: TestDefinition, calibration: TankConstants, effects: Se
     ]
 
 
-def covariance_of(draws: Draws, calibration: TankConstants, apart: tuple[float, float]) -> Array:
-    """Of NUISANCES [SI], from the repeated calibrations; ``apart``: variances of grain mass [kg^2] and throat [m^4].
+def covariance_of(draws: Draws, calibration: TankConstants, apart: tuple[float, float, float]) -> Array:
+    """Of NUISANCES [SI], from the repeated calibrations; ``apart``: variances of grain mass [kg^2], throat [m^4] and
+    the port's sensor [m^2].
 
     Raises AbsentError where too few of the repetitions have an answer.
     """
@@ -186,7 +207,7 @@ def whole_covariance(draws: Draws, definition: TestDefinition, calibration: Tank
     radius = definition.known("nozzle.throat_radius")
     assert radius is not None
     throat = 2.0 * pi * radius.value * (radius.std or 0.0)
-    return covariance_of(draws, calibration, (definition.known_std("grain.mass") ** 2, throat**2))
+    return covariance_of(draws, calibration, (definition.known_std("grain.mass") ** 2, throat**2, 0.0))
 
 
 def _stated_variances(definition: TestDefinition) -> tuple[float, float]:

@@ -54,7 +54,8 @@ _SHAPES: dict[str, dict[str, float]] = {
     "T_chamber": {"rises": 1.0, "pulse": 0.5, "wanders": 0.5, "state": 0.0, "clock": 0.5},
     "valve": {"state": 2.0, "pulse": 1.0},
 }
-"""Channel -> what a shape says for it (or against it). Evidence: test_survey.py, columns without names."""
+"""Channel that is guessed -> what a shape says for it (or against it); others are named by who knows them.
+Evidence: test_survey.py, columns without names."""
 _LIFELESS = {"constant": -2.0, "noise": -1.5, "empty": -5.0, "clock": -3.0, "state": -2.0, "dip": -1.0}
 """What other shapes say against any channel. Evidence: test_words.py, a dead column beside a living one."""
 
@@ -99,7 +100,7 @@ def judged(column: Column, shape: Shape, name: str = "") -> Judged:
         (one for part in (column.name.rpartition(".")[2], column.name, name) if (one := read(part)).words), Said()
     )
     named = _by_name(said, column.unit)
-    found = [_guess(channel, named, said, column, shape) for channel in CANONICAL if _possible(channel, said, column)]
+    found = [_guess(channel, named, said, column, shape) for channel in _SHAPES if _possible(channel, said, column)]
     least = {channel: ALIKE if points >= NAMED else LEAST for channel, points in named.items()}
     kept = [one for one in found if one is not None and one.points >= least.get(one.channel, LEAST)]
     kept.sort(key=lambda one: -one.points)

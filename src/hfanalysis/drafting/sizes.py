@@ -21,6 +21,7 @@ HIGHEST: dict[str, tuple[float, float]] = {
     "T_tank": (263.0, 330.0),
     "T_run": (255.0, 340.0),
     "T_chamber": (260.0, 1600.0),
+    "port_radius": (4e-3, 0.2),
     "valve": (0.0, np.inf),
 }
 """Channel -> between what its highest reading is on a stand [SI]. Source: nitrous oxide in a tank has 15 to 72 bar (-30
@@ -28,7 +29,7 @@ degC to its critical point), more under nitrogen; stands of student teams push 2
 
 TYPICAL: dict[str, float] = {
     "p_tank": 50e5, "p_run": 40e5, "p_chamber": 25e5, "p_purge": 50e5, "p_fill": 55e5, "thrust": 1500.0, "m_tank": 8.0,
-    "T_tank": 290.0, "T_run": 288.0, "T_chamber": 320.0,
+    "T_tank": 290.0, "T_run": 288.0, "T_chamber": 320.0, "port_radius": 0.04,
 }  # fmt: skip
 """A usual highest reading [SI], by which units are ranked that are all possible. Evidence: within a factor of two of
 most stands whose logs are published."""
@@ -38,6 +39,7 @@ UNITS = {
     "force": ("N", "lbf", "kgf"),
     "mass": ("kg", "lb", "g"),
     "temperature": ("degC", "degF", "K"),
+    "length": ("mm", "cm", "m", "in"),
     "dimensionless": ("",),
 }
 """Dimension -> units in which loggers write it, the likelier first."""

@@ -22,6 +22,7 @@ CANONICAL: dict[str, str] = {
     "T_tank": "temperature",
     "T_run": "temperature",
     "T_chamber": "temperature",
+    "port_radius": "length",
     "valve": "dimensionless",
 }
 """Canonical channel -> dimension. Other channels are carried through under their own names."""
@@ -37,6 +38,7 @@ LONG_NAMES: dict[str, str] = {
     "T_tank": "tank temperature",
     "T_run": "run line temperature",
     "T_chamber": "chamber temperature",
+    "port_radius": "radius of the grain's port",
     "valve": "main valve position",
 }
 
@@ -67,10 +69,12 @@ ACCURACY: dict[str, AccuracyClass] = {
     "force": AccuracyClass(5.0, 0.01),
     "mass": AccuracyClass(0.05, 0.005),
     "temperature": AccuracyClass(2.5),
+    "length": AccuracyClass(5e-4),
     "dimensionless": AccuracyClass(0.0),
 }
-"""Dimension -> default accuracy [Pa, N, kg, K]. Source: ordinary hardware: pressure transducers of 0.5 % of what they
-read, S-beam cells, bare thermocouples of tolerance class 2 (IEC 60584-1: 2.5 K up to 333 degC)."""
+"""Dimension -> default accuracy [Pa, N, kg, K, m]. Source: ordinary hardware: pressure transducers of 0.5 % of what
+they read, S-beam cells, bare thermocouples of tolerance class 2 (IEC 60584-1: 2.5 K up to 333 degC); of a port by
+ultrasound half a millimeter, by choice."""
 
 OTHER_ACCURACY = AccuracyClass(0.0, 0.01)
 """For every other dimension: 1 % of the largest reading."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import pi
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -16,7 +17,19 @@ from hfanalysis.record.default_deviations import Deviations, Stated
 from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.logspec import Channels, ChannelSpec, Exclusion, FileSpec, LogSpec, TimeSpec
 from hfanalysis.record.rocket import Rocket
-from hfanalysis.record.schema import Date, Instant, ListOf, Name, Refused, Section, Text, section, unknown_key, unsafe
+from hfanalysis.record.schema import (
+    Date,
+    Instant,
+    ListOf,
+    Name,
+    Refused,
+    Section,
+    Text,
+    changed,
+    section,
+    unknown_key,
+    unsafe,
+)
 from hfanalysis.record.sections import (
     Chamber,
     Feed,
@@ -185,12 +198,32 @@ def _no_definition(tests: Path, path: Path) -> str:
 def load_definition(path: Path) -> TestDefinition:
     """The test.toml at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
-    stated = validate(Statements, {"schema": None, **content}, path)
+    stated = _with_fuel_left(validate(Statements, {"schema": None, **content}, path), path)
     idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS.__contains__, "test.toml")
     digest, warnings = hashlib.sha256(raw).hexdigest(), (*_odd_names(stated.channels), *idle)
     definition = TestDefinition(**vars(stated), path=path, sha256=digest, warnings=warnings)
     _check_folder(definition)
     return definition
+
+
+def _with_fuel_left(stated: Statements, path: Path) -> Statements:
+    """With the fuel that a measured port leaves in its place, where that is what was measured after the test."""
+    radius, grain = getattr(stated.observed, "port_radius_after", None), stated.grain
+    if radius is None or stated.observed is None:
+        return stated
+    where = place(str(path), "observed", "port_radius_after")
+    if stated.observed.fuel_mass_after is not None:
+        raise InputError(f"{where}: found fuel_mass_after as well; expected one of them: each tells the other")
+    if grain is None or grain.length is None or grain.density is None or grain.outer_radius is None:
+        raise InputError(f"{where}: expected [grain] length, density and outer_radius beside it")
+    around = pi * grain.density.value * grain.length.value
+    left = around * (grain.outer_radius.value**2 - radius.value**2)
+    if left < 0.0 or (grain.mass is not None and left > grain.mass.value):
+        raise InputError(
+            f"{where}: found {1e3 * radius.value:.4g} mm; expected one from the port's to the grain's radius"
+        )
+    std = None if radius.std is None else 2.0 * around * radius.value * radius.std
+    return changed(stated, observed=changed(stated.observed, fuel_mass_after=Value(left, std)))
 
 
 def _odd_names(channels: Mapping[str, ChannelSpec]) -> tuple[str, ...]:

@@ -218,10 +218,12 @@ class StandSection(Section):
 
 @section
 class ObservedSection(Section):
-    """[observed]: seen or measured outside the log; time [s], radius [m], masses [kg]."""
+    """[observed]: seen or measured outside the log; time [s], radii [m], masses [kg]. ``port_radius_after``, of a grain
+    that was not burnt up, says what ``fuel_mass_after`` says, and one of them is stated."""
 
     burn_time: Duration | None = None
     throat_radius_after: Length | None = None
+    port_radius_after: Length | None = None
     fuel_mass_after: Remainder | None = None
     oxidizer_mass_after: Remainder | None = None
 

@@ -35,6 +35,7 @@ SPREADS_OF_TESTS = frozenset({
     "tank.volume", "tank.oxidizer_mass", "tank.ullage", "tank.polytropic_exponent", "injector.hole_area",
     "injector.hole_diameter", "injector.C_i", "feed.K_loss", "grain.mass", "grain.a", "grain.n", "nozzle.throat_radius",
     "site.ambient_pressure", "observed.burn_time", "observed.fuel_mass_after", "observed.oxidizer_mass_after",
+    "observed.port_radius_after",
     "rocket.dry_mass", "rocket.drag_coefficient", "rocket.launch_angle", "rocket.wind_speed",
 })  # fmt: skip
 """Values of test.toml whose +/- goes into intervals; that of an engine file goes into none. Evidence:
