@@ -18,6 +18,7 @@ from hfanalysis.record.definition import Statements
 from hfanalysis.record.engine_file import EngineStatements, load_engine
 from hfanalysis.record.log import read_log
 from hfanalysis.record.schema import DERIVED, Section
+from hfanalysis.record.sections import FuelSection, fuel_of
 from hfanalysis.record.unused import OF_ENGINES, OF_TESTS, SPREADS_OF_TESTS
 from hfanalysis.simulation import write
 from hfanalysis.simulation.steady_run import design
@@ -103,6 +104,7 @@ def by_engines(patch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFacto
     (folder / "e.toml").write_text(f'{text}engine_mass = "9 kg"\nengine_center_of_gravity = "2.5 m"\n{TOGETHER}')
     files = [load_engine(path) for path in (folder / "e.toml", ROOT / "engines" / "maelstrom.toml")]
     with watched(patch) as (read, _):
+        fuel_of(fuel())
         for file in files:
             found = simulate(file, None, 20)
             write.simulation(folder / "out", found)
@@ -123,6 +125,15 @@ def by_stages(
         read |= found[0]
         spreads |= found[1]
     return read, spreads
+
+
+def fuel() -> FuelSection:
+    """A blend, and what alone states a fuel."""
+    part = {"formula": "C20H42", "molar_enthalpy": "-554 kJ/mol", "share": "50 %"}
+    other = {"formula": "C2H4", "enthalpy": "-2 MJ/kg", "share": "50 %"}
+    for alone in ({k: v for k, v in one.items() if k != "share"} for one in (part, other)):
+        fuel_of(FuelSection(**alone))  # type: ignore[arg-type]
+    return FuelSection(name="blend", parts=[part, other])  # type: ignore[arg-type]
 
 
 def weighed() -> str:
@@ -151,6 +162,7 @@ def run(text: str, patch: pytest.MonkeyPatch, root: Path) -> tuple[set[tuple[str
     (folder / "test.toml").write_text(text)
     with watched(patch) as (read, spreads):
         context = open_test(root, "HF5")
+        fuel_of(fuel())
         spreads.clear()
         settings = {"flight.flights": 10, "flight.gust_seeds": 1, "flight.winds": [2.0], "calibrate.samples": 20}
         run_to("flight", run_to("validate", replace(context, settings=settings)))

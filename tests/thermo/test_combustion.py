@@ -16,7 +16,6 @@ from hfanalysis.arrays import Array
 from hfanalysis.steady_design.steady import Requirement, ideal_specific_impulse, optimum
 from hfanalysis.thermo.combustion import (
     FORMATION_OFFSET,
-    FUEL_MOLAR_MASS,
     PROPEP_OXIDIZER_ENTHALPY,
     equilibrium,
 )
@@ -33,6 +32,7 @@ from hfanalysis.thermo.combustion_table import (
     temperatures,
 )
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
+from hfanalysis.thermo.fuels import PARAFFIN
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property
 
@@ -100,8 +100,8 @@ def raw(pressure: float, of_ratio: float):  # type: ignore[no-untyped-def]
     fuel = cea.Reactant(
         name="wax",
         formula={"C": 20.0, "H": 42.0},
-        molecular_weight=FUEL_MOLAR_MASS,
-        enthalpy=-554e6 / FUEL_MOLAR_MASS,
+        molecular_weight=PARAFFIN.molar_mass,
+        enthalpy=-554e6 / PARAFFIN.molar_mass,
         enthalpy_units="J/kg",
         temperature=298.15,
     )
@@ -118,7 +118,7 @@ def raw(pressure: float, of_ratio: float):  # type: ignore[no-untyped-def]
     solver = cea.EqSolver(products, reactants=reactants)
     solution = cea.EqSolution(solver)
     weights = np.array([1.0, of_ratio]) / (1.0 + of_ratio)
-    enthalpy = weights @ np.array([-554e6 / FUEL_MOLAR_MASS, PROPEP_OXIDIZER_ENTHALPY])
+    enthalpy = weights @ np.array([-554e6 / PARAFFIN.molar_mass, PROPEP_OXIDIZER_ENTHALPY])
     solver.solve(solution, cea.HP, float(enthalpy) / cea.R, pressure / 1e5, weights)
     return solution, products
 

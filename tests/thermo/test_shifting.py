@@ -9,8 +9,8 @@ import cea
 import numpy as np
 import pytest
 
-from hfanalysis.thermo.combustion import FUEL_ENTHALPY, FUEL_MOLAR_MASS
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
+from hfanalysis.thermo.fuels import PARAFFIN
 from hfanalysis.thermo.shifting import expand, shifting
 
 ENTHALPY = 1.7e6
@@ -28,7 +28,7 @@ def rocket() -> tuple[Any, Any]:
             name=name, formula=formula, molecular_weight=mass, enthalpy=0.0, enthalpy_units="J/kg", temperature=298.15
         )
 
-    fuel = reactant("paraffin", {"C": 20.0, "H": 42.0}, FUEL_MOLAR_MASS)
+    fuel = reactant("paraffin", {"C": 20.0, "H": 42.0}, PARAFFIN.molar_mass)
     oxidizer = reactant("nitrous oxide", {"N": 2.0, "O": 1.0}, OXIDIZER_MOLAR_MASS)
     products = cea.Mixture([fuel, oxidizer], products_from_reactants=True)
     solver = cea.RocketSolver(products, reactants=cea.Mixture([fuel, oxidizer]))
@@ -39,7 +39,7 @@ def by_cea(bar: float, ratio: float, area: float) -> tuple[float, float]:
     """c* [m/s] and C_F into vacuum, equilibrium all the way."""
     solver, solution = rocket()
     weights = np.array([1.0, ratio]) / (1.0 + ratio)
-    enthalpy = float(weights @ [FUEL_ENTHALPY, ENTHALPY]) / cea.R
+    enthalpy = float(weights @ [PARAFFIN.enthalpy, ENTHALPY]) / cea.R
     solver.solve(solution, weights, bar, [2.0], supar=[area], hc=enthalpy, iac=True)
     last = solution.num_pts - 1
     c_star = float(solution.c_star[last])

@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 
 from hfanalysis.thermo import combustion_table
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel
 
 
-@lru_cache(maxsize=1)
-def combustion_of() -> combustion_table.CombustionTable:
-    """The combustion table, loaded once."""
-    return combustion_table.build()
+@lru_cache(maxsize=4)
+def combustion_of(fuel: Fuel = PARAFFIN) -> combustion_table.CombustionTable:
+    """The combustion table of a fuel, loaded once."""
+    return combustion_table.build(fuel=fuel)

@@ -21,6 +21,7 @@ from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw, TankConstants
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.sections import fuel_of
 from hfanalysis.roots import root_between
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
@@ -74,7 +75,7 @@ def engine_of_test(
     source = saturation(definition.model.properties)
     return Engine(
         saturation=source,
-        combustion=combustion_of(),
+        combustion=combustion_of(fuel_of(definition.fuel)),
         feed=FeedSystem(stated["volume"], effective_area(definition, calibration), loss_factor(calibration)),
         oxidizer_mass=loaded_mass(definition, calibration),
         temperature=temperature,

@@ -14,6 +14,7 @@ from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.grain import Grain
 from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
+from hfanalysis.record.sections import fuel_of
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.steady_design import injector, steady
@@ -135,6 +136,7 @@ def requirement(needs: Needs) -> steady.Requirement:
         ambient=ambient,
         exit_radius=exit_radius.value if exit_radius else None,
         oxidizer_enthalpy=oxidizer_enthalpy(needs).value,
+        fuel=fuel_of(needs.file.fuel),
     )
 
 
@@ -149,7 +151,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
     exit_radius = needs.value(file.nozzle.exit_radius, "nozzle", "exit_radius").value
     made = unsteady.Engine(
         saturation=properties(file),
-        combustion=combustion_of(),
+        combustion=combustion_of(fuel_of(file.fuel)),
         feed=feed(needs, built.volume),
         oxidizer_mass=needs.value(file.tank.oxidizer_mass, "tank", "oxidizer_mass").value,
         temperature=temperature(needs),

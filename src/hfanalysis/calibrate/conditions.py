@@ -40,8 +40,9 @@ definition: more than half of what is known comes from it."""
 
 
 def conditions(
-    law: Regression, flux: float, windows: Sequence[tuple[float, float]], trickles: Sequence[str] = ()
-) -> Iterator[str]:
+    law: Regression, flux: float, windows: Sequence[tuple[float, float]], trickles: Sequence[str] = (),
+    wax: bool = True,
+) -> Iterator[str]:  # fmt: skip
     """Why a and n hold on a condition, in words, with the source.
 
     Args:
@@ -49,7 +50,20 @@ def conditions(
         flux: the reference flux [kg/m^2/s], at which the rate is known best.
         windows: least and largest flux [kg/m^2/s] that were compared, by test.
         trickles: what :func:`set_by_trickle` says, by test.
+        wax: whether the fuel is paraffin, the only one of which laws are compared.
     """
+    if wax:
+        yield from _beside_paraffin(law, flux)
+    if not any(least <= flux <= most for least, most in windows):
+        least, most = min(w[0] for w in windows), max(w[1] for w in windows)
+        yield (
+            f"the rate is known best at a flux of {flux:.0f} kg/(m^2 s), outside the {least:.0f} to {most:.0f} that "
+            "were compared"
+        )
+    yield from (words for words in trickles if words)
+
+
+def _beside_paraffin(law: Regression, flux: float) -> Iterator[str]:
     low, high = PARAFFIN_N
     if not low <= law.n <= high:
         yield f"n is outside what paraffin is known for, {low} to {high} [{SOURCE}]"
@@ -60,13 +74,6 @@ def conditions(
             f"a is outside what paraffin is known for: {1e3 * rate:.2f} mm/s at {flux:.0f} kg/(m^2 s), "
             f"and not {1e3 * slow:.2f} to {1e3 * fast:.2f} [{SOURCE}]"
         )
-    if not any(least <= flux <= most for least, most in windows):
-        least, most = min(w[0] for w in windows), max(w[1] for w in windows)
-        yield (
-            f"the rate is known best at a flux of {flux:.0f} kg/(m^2 s), outside the {least:.0f} to {most:.0f} that "
-            "were compared"
-        )
-    yield from (words for words in trickles if words)
 
 
 def conditioned(judged: tuple[str, str], n: tuple[float, float], reasons: Iterable[str]) -> tuple[str, str]:

@@ -102,7 +102,7 @@ def _conditions(found: Fitted, flux: float) -> Iterator[str]:
         burnt = e.burnt(found.law)
         windows.append(flux_range(e, burnt))
         trickles.append(set_by_trickle(e, w, burnt, slopes(e, found.flux, found.best), windows[-1]))
-    return conditions(found.law, flux, windows, trickles)
+    return conditions(found.law, flux, windows, trickles, found.evidence[0].engine.combustion.fuel.wax)
 
 
 def rate_at(flux: float) -> str:

@@ -27,7 +27,7 @@ from hfanalysis.engine.unsteady import Engine, constants
 from hfanalysis.thermo.combustion_table import CombustionTable
 from hfanalysis.thermo.saturation import Saturation
 
-NO_GAS = CombustionTable((np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 1, 1, 1))))
+NO_GAS = CombustionTable((np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 1, 1, 1)), 0.0))
 """A tank alone burns nothing."""
 
 GIVEN = ("since", "pressure", "pressure_slope", "loss", "loss_slope", "heat")

@@ -38,7 +38,7 @@ class Equations(NamedTuple):
 _VECTOR, _REAL, _FLAG = types.float64[::1], types.float64, types.boolean
 _TUPLE: Any = types.Tuple
 _TABLE = _TUPLE((types.float64[:, :, ::1], _REAL, _REAL, _REAL))
-_GRID = _TUPLE((types.float64[:, ::1], types.float64[:, ::1], types.float64[:, :, :, ::1]))
+_GRID = _TUPLE((types.float64[:, ::1], types.float64[:, ::1], types.float64[:, :, :, ::1], _REAL))
 EQUATIONS = types.NamedTuple(  # type: ignore[no-untyped-call]
     (types.int64, types.int64, _TABLE, _GRID, types.float64[:, ::1], _VECTOR, types.int64[:, ::1], *[_VECTOR] * 3),
     Equations,

@@ -22,6 +22,7 @@ from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.sections import fuel_of
 from hfanalysis.record.signals import Signal
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
@@ -346,10 +347,11 @@ def _chamber_gas(
     pressure = signal.reduced(float(time[1] - time[0])).at(time)
     ambient = definition.ambient_pressure.value
     combustion.restart()
+    fuel = fuel_of(definition.fuel)
     lit = np.flatnonzero(pressure > LIT * ambient)
     chosen = lit[:: max(lit.size // EQUILIBRIA, 1)] if lit.size else np.array([int(np.argmax(pressure))])
     ratio = np.interp(time, load.time, load.of_ratio)
-    found = [combustion.equilibrium(max(float(pressure[i]), ambient), float(ratio[i])) for i in chosen]
+    found = [combustion.equilibrium(max(float(pressure[i]), ambient), float(ratio[i]), fuel=fuel) for i in chosen]
     gamma, rt = np.array([(gas.gamma, gas.gas_constant * gas.temperature) for gas in found]).T
     return ChamberGas(time, pressure, np.interp(time, time[chosen], gamma), np.interp(time, time[chosen], rt))
 

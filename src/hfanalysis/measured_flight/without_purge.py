@@ -37,8 +37,10 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import IDENTIFIED
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.sections import fuel_of
 from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
+from hfanalysis.thermo.fuels import Fuel
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 
@@ -105,6 +107,7 @@ class Known:
     ambient: float
     burnt: Propellant
     properties: str
+    made_of: Fuel
 
 
 @dataclass(frozen=True)
@@ -191,6 +194,7 @@ def known(
         None if m.value is None else Value(m.value, m.std), m.verdict == "stated",
         FuelLaw.of(definition, calibration), Grain(length, outer, density, 1.0, 0.5),
         np.pi * throat**2, np.pi * leave**2, definition.ambient_pressure.value, load, definition.model.properties,
+        fuel_of(definition.fuel),
     )  # fmt: skip
 
 
@@ -212,7 +216,7 @@ def tail(found: Known, draw: Draw) -> Tail:
         found.grain.density, found.volume, found.throat, found.leave, found.ambient,
         float(NOZZLE_LAWS.index(draw.nozzle)), PROPEP_OXIDIZER_ENTHALPY,
     )  # fmt: skip
-    gas = combustion_of().kernel
+    gas = combustion_of(found.made_of).kernel
     chamber = at_purge[1]
     if chamber > found.ambient:  # the gas is as hot as the chamber pressure says
         enters, leaves = begun.inflow(gas, chamber)

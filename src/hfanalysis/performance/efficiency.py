@@ -81,7 +81,9 @@ def ideal(
     pressure = read * before.factor
     frozen = nozzle_along(engine, pressure, ratio, ambient)
     assert engine.oxidizer_enthalpy is not None
-    gain, vacuum = shifting(pressure, ratio, engine.oxidizer_enthalpy, engine.exit_area / engine.throat_area)
+    gain, vacuum = shifting(
+        pressure, ratio, engine.oxidizer_enthalpy, engine.exit_area / engine.throat_area, engine.combustion.fuel
+    )
     vacuum = np.where(_full(engine, pressure, frozen.gamma, ambient), vacuum, np.nan)
     c_star = characteristic_velocity(frozen.heat, frozen.gamma)
     thrust = vacuum * pressure * engine.throat_area - ambient * engine.exit_area

@@ -63,7 +63,9 @@ def _regression(flows: Flows, engine: Engine, fire: Fire, spread: Spread) -> dic
             a * flux**n,
             "m/s",
             why=f"paraffin and nitrous oxide: {a:.3g} G^{n} (the technical report, from the literature)",
-        ),
+        )
+        if engine.combustion.fuel.wax
+        else Quantity.absent("[fuel] is no paraffin, the only fuel of which a published law is compared"),
     }
 
 

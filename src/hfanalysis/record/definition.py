@@ -33,6 +33,7 @@ from hfanalysis.record.schema import (
 from hfanalysis.record.sections import (
     Chamber,
     Feed,
+    FuelSection,
     GrainSection,
     Injector,
     Model,
@@ -110,6 +111,7 @@ class Statements(Section):
     injector: Injector | None = None
     feed: Feed | None = None
     purge: Purge | None = None
+    fuel: FuelSection | None = None
     grain: GrainSection | None = None
     chamber: Chamber | None = None
     nozzle: NozzleSection | None = None

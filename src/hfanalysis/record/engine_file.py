@@ -21,6 +21,7 @@ from hfanalysis.record.sections import (
     DesignSection,
     EngineSection,
     Feed,
+    FuelSection,
     GrainSection,
     Injector,
     Model,
@@ -51,6 +52,7 @@ class EngineStatements(Section):
     feed: Feed = Feed()
     injector: Injector = Injector()
     purge: Purge | None = None
+    fuel: FuelSection | None = None
     grain: GrainSection = GrainSection()
     chamber: Chamber = Chamber()
     nozzle: NozzleSection = NozzleSection()

@@ -17,6 +17,7 @@ from hfanalysis.record.schema import Section, section
 from hfanalysis.record.sections import (
     Chamber,
     Feed,
+    FuelSection,
     GrainSection,
     Injector,
     Model,
@@ -42,6 +43,7 @@ class PlannedStatements(Section):
     feed: Feed | None = None
     injector: Injector | None = None
     purge: Purge | None = None
+    fuel: FuelSection | None = None
     grain: GrainSection | None = None
     chamber: Chamber | None = None
     nozzle: NozzleSection | None = None

@@ -36,6 +36,7 @@ from hfanalysis.record.schema import (
     read_quantity,
     section,
 )
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel, atoms_of, blend, molar_mass
 from hfanalysis.units import Value
 
 LIQUID_DENSITY_LIMIT = 1250.0
@@ -146,6 +147,73 @@ class Purge(Section):
     """[purge]: pressure difference [Pa] at which the check valve between purge line and tank opens."""
 
     cracking_pressure: PressureDifference | None = None
+
+
+@section
+class FuelPart(Section):
+    """What a fuel is made of: a formula, and its heat of formation at 25 degC, of a mass [J/kg] or a mole [J/mol]."""
+
+    formula: Text
+    enthalpy: Annotated[Value, quantity("specific_energy")] | None = None
+    molar_enthalpy: Annotated[Value, quantity("molar_energy")] | None = None
+    share: Share | None = None
+
+    def check(self) -> None:
+        self._not_both("enthalpy", "molar_enthalpy")
+        _fuel("", self.formula, self.enthalpy, self.molar_enthalpy)
+
+
+def _fuel(name: str, formula: str, enthalpy: Value | None, molar_enthalpy: Value | None) -> Fuel:
+    """As chemistry knows it; Refused where it is none, or its enthalpy is not stated."""
+    try:
+        atoms = atoms_of(formula)
+    except ValueError as error:
+        raise Refused(f"found {error}", "formula") from None
+    mass = PARAFFIN.molar_mass if atoms == PARAFFIN.atoms else molar_mass(atoms)
+    if enthalpy is not None:
+        return Fuel(name, atoms, mass, enthalpy.value)
+    if molar_enthalpy is not None:
+        return Fuel(name, atoms, mass, 1e3 * molar_enthalpy.value / mass)
+    raise Refused("expected 'enthalpy' or 'molar_enthalpy': the heat of formation of what burns at 25 degC")
+
+
+@section
+class FuelSection(Section):
+    """[fuel]: what the grain is made of; without it paraffin, n-eicosane. ``parts``: of a blend, with their shares by
+    mass."""
+
+    name: Text = ""
+    formula: Text | None = None
+    enthalpy: Annotated[Value, quantity("specific_energy")] | None = None
+    molar_enthalpy: Annotated[Value, quantity("molar_energy")] | None = None
+    parts: ListOf[FuelPart] = ()
+
+    def check(self) -> None:
+        if bool(self.parts) == (self.formula is not None):
+            raise Refused("expected a 'formula' with its enthalpy, or 'parts' that have them")
+        if self.parts:
+            shares = [part.share for part in self.parts]
+            total = sum(share.value for share in shares if share is not None)
+            if None in shares or abs(total - 1.0) > 1e-3:
+                raise Refused(
+                    f"found shares of {100.0 * total:.4g} % together; expected one of each part, 100 % in all", "parts"
+                )
+        self._not_both("enthalpy", "molar_enthalpy")
+        _ = self.made
+
+    @property
+    def made(self) -> Fuel:
+        """As chemistry knows it."""
+        name = self.name or self.formula or "blend"
+        if self.formula is not None:
+            return _fuel(name, self.formula, self.enthalpy, self.molar_enthalpy)
+        found = [(p.share.value, _fuel("", p.formula, p.enthalpy, p.molar_enthalpy)) for p in self.parts if p.share]
+        return blend(name, found)
+
+
+def fuel_of(stated: FuelSection | None) -> Fuel:
+    """What burns: as stated, else paraffin."""
+    return PARAFFIN if stated is None else stated.made
 
 
 @section

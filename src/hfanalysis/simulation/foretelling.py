@@ -96,6 +96,7 @@ def _built(file: EngineFile) -> Engine:
 def _content(plan: PlannedTest, base: Base, calibration: Calibration, temperature: str | None) -> dict[str, Any]:
     """What an engine file of the planned test would state."""
     own = {name: dict(plan.content.get(name, {})) for name in ("tank", "injector", "grain", "chamber", "nozzle")}
+    own |= {"fuel": dict(plan.content["fuel"])} if "fuel" in plan.content else {}
     if temperature is not None:
         own["tank"]["temperature"] = temperature
     own["tank"]["polytropic_exponent"] = exponent(calibration)[0]

@@ -107,6 +107,8 @@ def _sections(found: OfTest, flight: bool) -> dict[str, Table]:
     if test.stand:
         head.put("stand", test.stand, AS_STATED)
     parts = {name: _as_stated(stated.get(name, {})) for name in ("tank", "injector", "grain", "chamber", "nozzle")}
+    if "fuel" in stated:
+        parts["fuel"] = _as_stated(stated["fuel"])
     _constants(found, parts)
     feed = Table()
     if flight:

@@ -124,7 +124,7 @@ def of_design(needs: Needs, asked: Requirement, port_radius: float, found: Stead
               ) -> Cautions:  # fmt: skip
     """Of a steady design with its initial ``port_radius`` [m], its rocket and the tank that the file states."""
     chamber = asked.chamber_pressure
-    gas = equilibrium(chamber, found.of_ratio, asked.oxidizer_enthalpy)
+    gas = equilibrium(chamber, found.of_ratio, asked.oxidizer_enthalpy, fuel=asked.fuel)
     lost = 1.0 - steady.ideal_specific_impulse(asked, found.of_ratio) / best.specific_impulse
     return (
         *_of_feed(needs, asked),

@@ -22,17 +22,19 @@ from hfanalysis.engine.nozzle import (
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, gravity
 from hfanalysis.roots import root_between
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel
 
 
 @dataclass(frozen=True)
 class Requirement:
-    """What a steady design starts from: oxidizer flow [kg/s], pressures [Pa], exit radius [m] (None: ideal)."""
+    """What a steady design starts from: oxidizer flow [kg/s], pressures [Pa], exit radius [m] (None: ideal), fuel."""
 
     oxidizer_flow: float
     chamber_pressure: float
     ambient: float
     exit_radius: float | None
     oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY
+    fuel: Fuel = PARAFFIN
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def design(requirement: Requirement, grain: Grain, fuel_mass: float) -> SteadyEn
     time = grain.burn_time(requirement.oxidizer_flow, fuel_mass)
     fuel_flow = fuel_mass / time
     of_ratio = requirement.oxidizer_flow / fuel_flow
-    gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
+    gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy, fuel=requirement.fuel)
     flow = requirement.oxidizer_flow + fuel_flow
     throat = flow / choked_flow(gas.gamma, _heat(gas), requirement.chamber_pressure, 1.0)
     thrust, exit_area = _thrust(gas, requirement, throat)
@@ -133,7 +135,7 @@ class OptimumMixture:
 
 def ideal_specific_impulse(requirement: Requirement, of_ratio: float) -> float:
     """Specific impulse [s] of the ideally expanded nozzle at a mixture ``of_ratio`` [-] (report, eq. 2.9 to 2.15)."""
-    gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
+    gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy, fuel=requirement.fuel)
     thrust, _ = _thrust(gas, replace(requirement, exit_radius=None), 1.0)
     flow = choked_flow(gas.gamma, _heat(gas), requirement.chamber_pressure, 1.0)
     return float(thrust / (flow * STANDARD_GRAVITY))

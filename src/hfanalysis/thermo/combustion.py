@@ -1,8 +1,9 @@
-"""Equilibrium combustion of nitrous oxide and paraffin, by NASA's CEA (report, section 2.1.2; PROPEP there).
+"""Equilibrium combustion of nitrous oxide and a fuel, by NASA's CEA (report, section 2.1.2; PROPEP there).
 
-Paraffin is n-eicosane, C20H42, liquid. The gas in the nozzle is taken frozen: its heat capacity ratio is that of the
-chamber's composition with no further reaction (an equilibrium ratio gives 249 s at O/F 7.0 where the report has 238 s
-at 6.34). Condensed carbon counts: it takes part in the mass and not in the gas law.
+The fuel is paraffin, n-eicosane, C20H42, liquid, where no other is asked for. The gas in the nozzle is taken frozen:
+its heat capacity ratio is that of the chamber's composition with no further reaction (an equilibrium ratio gives 249 s
+at O/F 7.0 where the report has 238 s at 6.34). Condensed carbon counts: it takes part in the mass and not in the gas
+law.
 """
 
 from __future__ import annotations
@@ -17,13 +18,7 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
-
-FUEL_MOLAR_MASS = 282.5475
-"""n-eicosane [kg/kmol]. Source: C20H42 by standard atomic weights."""
-
-FUEL_ENTHALPY = -554e6 / FUEL_MOLAR_MASS
-"""Heat of formation of liquid n-eicosane at 298.15 K [J/kg]. Evidence: the report prints +557 MJ/kmol, a slip of the
-sign."""
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel
 
 PROPEP_OXIDIZER_ENTHALPY = 82.05e6 / OXIDIZER_MOLAR_MASS
 """Enthalpy of nitrous oxide as PROPEP, and with it the report, takes it [J/kg]. Source: heat of formation of the ideal
@@ -61,8 +56,9 @@ class Gas:
 
 
 def equilibrium(
-    pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY, nitrogen_share: float = 0.0
-) -> Gas:
+    pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY, nitrogen_share: float = 0.0,
+    fuel: Fuel = PARAFFIN,
+) -> Gas:  # fmt: skip
     """Equilibrium at constant enthalpy and ``pressure`` [Pa].
 
     ``of_ratio`` [-] counts all that comes through the injector, of which ``nitrogen_share`` by mass is nitrogen at
@@ -75,17 +71,19 @@ def equilibrium(
     if not (0.0 < pressure < np.inf and 0.0 < of_ratio < np.inf and 0.0 <= nitrogen_share < 1.0):
         raise ValueError(f"no mixture: {pressure=} Pa, {of_ratio=}, {nitrogen_share=}")
     try:
-        return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+        return _solver(fuel).solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
     except ArithmeticError:  # a start far off may be to blame
         restart()
-        return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+        return _solver(fuel).solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
 
 
-def condensed_carbon(pressure: float, of_ratio: float, oxidizer_enthalpy: float, nitrogen_share: float) -> float:
+def condensed_carbon(
+    pressure: float, of_ratio: float, oxidizer_enthalpy: float, nitrogen_share: float, fuel: Fuel = PARAFFIN
+) -> float:
     """Mass fraction of graphite [-] in :func:`equilibrium` at the same ``pressure`` [Pa], mixture and enthalpy
     [J/kg]."""
-    equilibrium(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
-    return _solver().carbon
+    equilibrium(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share, fuel)
+    return _solver(fuel).carbon
 
 
 def restart() -> None:
@@ -99,13 +97,14 @@ def restart() -> None:
 class _Solver:
     """CEA's equilibrium solver with the reactants set up once."""
 
-    def __init__(self) -> None:
+    def __init__(self, of: Fuel) -> None:
         import cea
 
+        self._fuel = of
         fuel = cea.Reactant(
-            name="paraffin",
-            formula={"C": 20.0, "H": 42.0},
-            molecular_weight=FUEL_MOLAR_MASS,
+            name="fuel",
+            formula=dict(of.atoms),
+            molecular_weight=of.molar_mass,
             enthalpy=0.0,
             enthalpy_units="J/kg",
             temperature=REFERENCE_TEMPERATURE,
@@ -134,7 +133,7 @@ class _Solver:
         weights = np.array([1.0, of_ratio * (1.0 - nitrogen_share), of_ratio * nitrogen_share])
         weights /= weights.sum()
         self._weights = weights
-        enthalpy = float(weights[0] * FUEL_ENTHALPY + weights[1] * oxidizer_enthalpy)
+        enthalpy = float(weights[0] * self._fuel.enthalpy + weights[1] * oxidizer_enthalpy)
         if not self._settled(self._cea.HP, enthalpy, pressure):
             raise ArithmeticError(f"no equilibrium at {pressure / 1e5:.3g} bar and O/F {of_ratio:.3g}")
         s = self._solution
@@ -178,19 +177,19 @@ class State:
 
 
 def isentrope(
-    pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY
+    pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY, fuel: Fuel = PARAFFIN
 ) -> tuple[Gas, State, Callable[[float], State]]:
     """The chamber's gas, its state, and the state at any other pressure [Pa] of the same entropy and elements.
 
     The composition shifts with the pressure. Arguments and errors are those of :func:`equilibrium`; the states' errors
     are, too. They hold until the next equilibrium is asked for elsewhere.
     """
-    gas = equilibrium(pressure, of_ratio, oxidizer_enthalpy)
-    solver = _solver()
+    gas = equilibrium(pressure, of_ratio, oxidizer_enthalpy, fuel=fuel)
+    solver = _solver(fuel)
     entropy = solver.entropy
     return gas, solver.state(pressure), lambda there: solver.at_entropy(entropy, there)
 
 
 @lru_cache(maxsize=1)
-def _solver() -> _Solver:
-    return _Solver()
+def _solver(fuel: Fuel) -> _Solver:
+    return _Solver(fuel)

@@ -33,14 +33,14 @@ from hfanalysis.compiled import compiled, inlined
 from hfanalysis.errors import AbsentError
 from hfanalysis.thermo import combustion
 from hfanalysis.thermo.cache import cached
-from hfanalysis.thermo.combustion import FUEL_MOLAR_MASS, PROPEP_OXIDIZER_ENTHALPY, equilibrium
-from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, equilibrium
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel
 
 Four = tuple[float, float, float, float]
 Shares = tuple[int, int, Four]
 Place = tuple[int, Four, Four, Four, Four, float]
-Grid = tuple[Array, Array, Array]
-"""Nodes (see :func:`_place`), their slopes along the share, and the carbon edge."""
+Grid = tuple[Array, Array, Array, float]
+"""Nodes (see :func:`_place`), their slopes along the share, the carbon edge, and what mixtures are shifted by."""
 
 PRESSURES = (0.2e5, 120e5)
 """Range in p [Pa]. Evidence: random mixtures from 0.3 to 100 bar, inside it, are checked against direct equilibria
@@ -62,8 +62,9 @@ STRETCH = 0.25
 """Shares are spaced evenly in -ln(1 - share + STRETCH) [-]: the temperature falls as 1 - share. Evidence:
 docs/combustion.md has what the table errs by at every share of nitrogen."""
 
-STOICHIOMETRIC = 61.0 * OXIDIZER_MOLAR_MASS / FUEL_MOLAR_MASS
-"""Nitrous oxide over fuel by mass [-]. Source: C20H42 + 61 N2O -> 20 CO2 + 21 H2O + 61 N2."""
+STOICHIOMETRIC = PARAFFIN.stoichiometric
+"""Nitrous oxide over paraffin by mass [-]. Source: C20H42 + 61 N2O -> 20 CO2 + 21 H2O + 61 N2. The mixtures of another
+fuel are shifted until its stoichiometry lies there."""
 
 NUDGES = (0.0, 1e-7, -1e-7, 1e-5, -1e-5)
 """Steps in x tried where CEA does not converge."""
@@ -106,22 +107,28 @@ class Nodes:
 
 @dataclass(frozen=True)
 class CombustionTable:
-    """The table of all mixtures; ``kernel`` is what :func:`gas_at` reads."""
+    """The table of all mixtures of nitrous oxide and a ``fuel``; ``kernel`` is what :func:`gas_at` reads."""
 
     kernel: Grid
+    fuel: Fuel = PARAFFIN
 
 
-def build(nodes: Nodes = Nodes()) -> CombustionTable:
-    """The table, from the cache where it is there, else from CEA (some seconds, once).
+def build(nodes: Nodes = Nodes(), fuel: Fuel = PARAFFIN) -> CombustionTable:
+    """The table, from the cache where it is there, else from CEA (some seconds, once for each fuel).
 
     Raises AbsentError where CEA is not installed.
     """
-    samples = cached(_name(nodes), nodes.shape, lambda: sample(nodes))
-    return CombustionTable(_with_slopes(samples, nodes))
+    samples = cached(_name(nodes, fuel), nodes.shape, lambda: sample(nodes, fuel))
+    return CombustionTable((*_with_slopes(samples, nodes), shift_of(fuel)), fuel)
 
 
-def _name(nodes: Nodes) -> str:
-    return f"combustion-cea-{made_by()}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
+def _name(nodes: Nodes, fuel: Fuel) -> str:
+    return f"combustion-cea-{made_by()}-{fuel.key}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
+
+
+def shift_of(fuel: Fuel) -> float:
+    """What is added to ln(nitrous oxide / fuel) so that stoichiometry lies where the table has it [-]."""
+    return _S - float(np.log(fuel.stoichiometric))
 
 
 def made_by() -> str:
@@ -134,7 +141,7 @@ def made_by() -> str:
         ) from None
 
 
-def sample(nodes: Nodes) -> Array:
+def sample(nodes: Nodes, fuel: Fuel = PARAFFIN) -> Array:
     """All nodes straight from CEA, shape ``nodes.shape``: ln(R T [J/kg]), gamma, ln(T [K]); one that does not converge
     takes the previous one's values.
 
@@ -142,19 +149,19 @@ def sample(nodes: Nodes) -> Array:
     """
     combustion.restart()
     with quietly():
-        out = _sampled(nodes)
+        out = _sampled(nodes, fuel)
     combustion.restart()
     return out
 
 
-def _sampled(nodes: Nodes) -> Array:
+def _sampled(nodes: Nodes, fuel: Fuel) -> Array:
     out = np.empty(nodes.shape)
     for k, share in enumerate(_shares(nodes.shares)):
         for level, enthalpy in enumerate(ENTHALPIES):
             edge = float(out[k - 1, 0, level, -1, 0]) if k else _S
             for i, p in enumerate(np.exp(np.linspace(_P0, _P1, nodes.pressures))):
-                edge = carbon_edge(float(p), enthalpy, float(share), edge)
-                out[k, i, level, :-1] = _column(float(p), edge, enthalpy, float(share), nodes.mixtures)
+                edge = carbon_edge(float(p), enthalpy, float(share), edge, fuel)
+                out[k, i, level, :-1] = _column(float(p), edge, enthalpy, float(share), nodes.mixtures, fuel)
                 out[k, i, level, -1] = edge
     return out
 
@@ -183,24 +190,29 @@ def _shares(count: int) -> Array:
     return np.asarray(shares)
 
 
-def _column(pressure: float, edge: float, enthalpy: float, share: float, count: int) -> Array:
+def _column(pressure: float, edge: float, enthalpy: float, share: float, count: int, fuel: Fuel) -> Array:
     rows: list[tuple[float, ...]] = []
     for x in _mixtures(edge, count):
         try:
-            rows.append(_node(pressure, float(x), enthalpy, share))
+            rows.append(_node(pressure, float(x), enthalpy, share, fuel))
         except ArithmeticError:
             rows.append(rows[-1])
     return np.array(rows)
 
 
-def _node(pressure: float, x: float, enthalpy: float, share: float) -> tuple[float, float, float]:
+def _node(pressure: float, x: float, enthalpy: float, share: float, fuel: Fuel) -> tuple[float, float, float]:
     """A column's rows, if need be of a mixture a hair's breadth away: single points do not converge."""
     for aside in NUDGES:
         with suppress(ArithmeticError):
-            gas = equilibrium(pressure, float(np.exp(x + aside)) / (1.0 - share), enthalpy, share)
+            gas = equilibrium(pressure, _ratio(x + aside, share, fuel), enthalpy, share, fuel)
             ln_t = float(np.log(gas.temperature))
             return float(np.log(gas.gas_constant)) + ln_t, gas.gamma, ln_t
     raise ArithmeticError(f"no equilibrium near {pressure / 1e5:.3g} bar and {np.exp(x):.3g} of oxidizer over fuel")
+
+
+def _ratio(x: float, share: float, fuel: Fuel) -> float:
+    """All that comes through the injector over fuel [-]."""
+    return float(np.exp(x - shift_of(fuel))) / (1.0 - share)
 
 
 def _mixtures(edge: float, count: int) -> Array:
@@ -210,7 +222,7 @@ def _mixtures(edge: float, count: int) -> Array:
     return np.concatenate(zones)
 
 
-def carbon_edge(pressure: float, enthalpy: float, share: float, guess: float = _S) -> float:
+def carbon_edge(pressure: float, enthalpy: float, share: float, guess: float = _S, fuel: Fuel = PARAFFIN) -> float:
     """x [-] of the leanest mixture with condensed carbon: where its mass fraction, from the rich side, comes to
     nothing.
 
@@ -219,7 +231,7 @@ def carbon_edge(pressure: float, enthalpy: float, share: float, guess: float = _
     """
 
     def carbon(x: float) -> float:
-        return combustion.condensed_carbon(pressure, float(np.exp(x)) / (1.0 - share), enthalpy, share)
+        return combustion.condensed_carbon(pressure, _ratio(x, share, fuel), enthalpy, share, fuel)
 
     for apart in (3e-2, 1e-3, 3e-5):
         while (near := carbon(guess - apart)) <= 0.0:
@@ -230,7 +242,7 @@ def carbon_edge(pressure: float, enthalpy: float, share: float, guess: float = _
     return guess
 
 
-def _with_slopes(samples: Array, nodes: Nodes) -> Grid:
+def _with_slopes(samples: Array, nodes: Nodes) -> tuple[Array, Array, Array]:
     """Spline slopes at the nodes, laid out as :func:`_place` reads them."""
     values, edges = samples[:, :, :, :-1], samples[:, :, :, -1, 0]
     along_p = _spline_slopes(np.linspace(0.0, nodes.pressures - 1.0, nodes.pressures))
@@ -453,9 +465,9 @@ def _row(
 
 
 @inlined
-def _oxidizer_to_fuel(ln_ratio: float, share: float) -> float:
+def _oxidizer_to_fuel(ln_ratio: float, share: float, shift: float) -> float:
     """x, of the nitrous oxide alone."""
-    return ln_ratio if share <= 0.0 else ln_ratio + np.log1p(-min(share, SHARE))
+    return ln_ratio + shift if share <= 0.0 else ln_ratio + shift + np.log1p(-min(share, SHARE))
 
 
 @compiled
@@ -463,10 +475,10 @@ def _at(
     table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, share: float, row: int
 ) -> tuple[float, float]:
     """One row and its derivative with ln p."""
-    nodes, drift, curve = table
+    nodes, drift, curve, shift = table
     stride = nodes.shape[0] // (curve.shape[0] * curve.shape[1])
     levels, shares = _levels(enthalpy), _share_cell(share, curve.shape[0])
-    place = _place(curve, stride, ln_pressure, _oxidizer_to_fuel(ln_ratio, share), levels, shares)
+    place = _place(curve, stride, ln_pressure, _oxidizer_to_fuel(ln_ratio, share, shift), levels, shares)
     return _row(nodes, drift, stride, stride * curve.shape[1], place, levels, shares, row)
 
 
@@ -477,11 +489,11 @@ def gas_at(table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, sh
     ``ln_ratio`` is that of all that comes through the injector to fuel, of which ``share`` is nitrogen by mass;
     ``enthalpy`` that of the nitrous oxide entering [J/kg].
     """
-    nodes, drift, curve = table
+    nodes, drift, curve, shift = table
     stride = nodes.shape[0] // (curve.shape[0] * curve.shape[1])
     jump = stride * curve.shape[1]
     levels, shares = _levels(enthalpy), _share_cell(share, curve.shape[0])
-    place = _place(curve, stride, ln_pressure, _oxidizer_to_fuel(ln_ratio, share), levels, shares)
+    place = _place(curve, stride, ln_pressure, _oxidizer_to_fuel(ln_ratio, share, shift), levels, shares)
     ln_rt, _ = _row(nodes, drift, stride, jump, place, levels, shares, LN_RT)
     gamma, _ = _row(nodes, drift, stride, jump, place, levels, shares, GAMMA)
     return np.exp(ln_rt), gamma
@@ -508,11 +520,11 @@ def chamber_pressure(
     The mixture's arguments are those of :func:`gas_at`, ``guess`` [Pa]. Newton's steps in ln p: R T hardly depends on p
     and its curvature in ln p is below 0.1, so that what follows a step of 1e-6 is round-off.
     """
-    nodes, drift, curve = table
+    nodes, drift, curve, shift = table
     stride = nodes.shape[0] // (curve.shape[0] * curve.shape[1])
     jump = stride * curve.shape[1]
     levels, shares = _levels(enthalpy), _share_cell(share, curve.shape[0])
-    x, here, target = _oxidizer_to_fuel(ln_ratio, share), np.log(guess), np.log(mass / volume)
+    x, here, target = _oxidizer_to_fuel(ln_ratio, share, shift), np.log(guess), np.log(mass / volume)
     place = _place(curve, stride, here, x, levels, shares)
     ln_rt, slope = _row(nodes, drift, stride, jump, place, levels, shares, LN_RT)
     step = (target + ln_rt - here) / (1.0 - slope)

@@ -28,6 +28,7 @@ from hfanalysis.thermo import combustion
 from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, State
 from hfanalysis.thermo.combustion_table import made_by, quietly
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel
 
 BEHIND = (0.7, 0.45, 0.25, 0.12, 0.05, 0.02, 0.007)
 """Pressures behind the throat, over the throat's [-], at which the isentrope is taken: to an area ratio of 12 or more.
@@ -65,7 +66,9 @@ class Expansion:
         return np.asarray(self._along(np.sqrt(np.log(area_ratio))))
 
 
-def expand(pressure: float, of_ratio: float, enthalpy: float = PROPEP_OXIDIZER_ENTHALPY) -> Expansion:
+def expand(
+    pressure: float, of_ratio: float, enthalpy: float = PROPEP_OXIDIZER_ENTHALPY, fuel: Fuel = PARAFFIN
+) -> Expansion:
     """Shifting expansion from a chamber at ``pressure`` [Pa]; ``enthalpy`` of the nitrous oxide entering [J/kg].
 
     Raises ArithmeticError where there is no equilibrium, ValueError for no mixture.
@@ -74,7 +77,7 @@ def expand(pressure: float, of_ratio: float, enthalpy: float = PROPEP_OXIDIZER_E
     >>> round(found.c_star), round(found.frozen), round(float(found.vacuum_coefficient(2.67)), 3)
     (1553, 1503, 1.541)
     """
-    gas, chamber, at = combustion.isentrope(pressure, of_ratio, enthalpy)
+    gas, chamber, at = combustion.isentrope(pressure, of_ratio, enthalpy, fuel)
 
     def flux(state: State) -> tuple[float, float]:
         speed = sqrt(2.0 * max(chamber.enthalpy - state.enthalpy, 0.0))
@@ -106,7 +109,9 @@ def _critical(g: float) -> float:
     return float((2.0 / (g + 1.0)) ** (g / (g - 1.0)))
 
 
-def shifting(pressure: Array, of_ratio: Array, enthalpy: float, area_ratio: float) -> tuple[Array, Array]:
+def shifting(
+    pressure: Array, of_ratio: Array, enthalpy: float, area_ratio: float, fuel: Fuel = PARAFFIN
+) -> tuple[Array, Array]:
     """c* over that of the frozen gas [-], and C_F into vacuum [-], (n,) each; NaN where there is no mixture.
 
     ``pressure`` [Pa] and ``of_ratio`` (n,), ``enthalpy`` of the nitrous oxide entering [J/kg]. Raises AbsentError where
@@ -114,7 +119,7 @@ def shifting(pressure: Array, of_ratio: Array, enthalpy: float, area_ratio: floa
     """
     there = np.isfinite(of_ratio) & (of_ratio > 0.0) & (pressure > 0.0)
     share = float(np.clip((enthalpy - ENTHALPIES[0]) / (ENTHALPIES[1] - ENTHALPIES[0]), 0.0, 1.0))
-    table = (1.0 - share) * _table()[0] + share * _table()[1]
+    table = (1.0 - share) * _table(fuel)[0] + share * _table(fuel)[1]
     force = CubicSpline(np.log(_grid(AREAS, NODES[2])), table[:, :, 1:], axis=2)(log(np.clip(area_ratio, *AREAS)))
     p = np.log(np.clip(np.where(there, pressure, 1.0), *PRESSURES))
     x = np.log(np.clip(np.where(there, of_ratio, 1.0), *MIXTURES))
@@ -127,27 +132,28 @@ def _grid(limits: tuple[float, float], count: int) -> Array:
     return np.geomspace(*limits, count)
 
 
-@lru_cache(maxsize=1)
-def _table() -> Array:
+@lru_cache(maxsize=4)
+def _table(fuel: Fuel) -> Array:
     """(enthalpies, pressures, mixtures, 1 + area ratios), from the cache or, once, from CEA in some seconds."""
     shape = (len(ENTHALPIES), *NODES[:2], 1 + NODES[2])
-    return cached(f"shifting-cea-{made_by()}-{'-'.join(map(str, NODES))}", shape, sampled)
+    name = f"shifting-cea-{made_by()}-{fuel.key}-{'-'.join(map(str, NODES))}"
+    return cached(name, shape, lambda: sampled(fuel))
 
 
-def sampled() -> Array:
+def sampled(fuel: Fuel = PARAFFIN) -> Array:
     """The table straight from CEA; a mixture that does not converge takes the values of the last one that did."""
     combustion.restart()
     with quietly():
-        rows = [[_along_mixtures(float(p), h) for p in _grid(PRESSURES, NODES[0])] for h in ENTHALPIES]
+        rows = [[_along_mixtures(float(p), h, fuel) for p in _grid(PRESSURES, NODES[0])] for h in ENTHALPIES]
     combustion.restart()
     return np.array(rows)
 
 
-def _along_mixtures(pressure: float, enthalpy: float) -> Array:
+def _along_mixtures(pressure: float, enthalpy: float, fuel: Fuel) -> Array:
     areas, rows = _grid(AREAS, NODES[2]), []
     for ratio in _grid(MIXTURES, NODES[1]):
         with suppress(ArithmeticError):
-            rows.append(_row(expand(pressure, float(ratio), enthalpy), areas))
+            rows.append(_row(expand(pressure, float(ratio), enthalpy, fuel), areas))
             continue
         rows.append(rows[-1])
     return np.array(rows)

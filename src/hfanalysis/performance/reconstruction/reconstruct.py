@@ -18,6 +18,7 @@ from hfanalysis.performance.reconstruction.posterior import Courses, courses
 from hfanalysis.performance.reconstruction.theory import MIXTURES, Theory
 from hfanalysis.products.reconstruction import Reconstruction
 from hfanalysis.quantity import CONDITIONAL, Quantity
+from hfanalysis.record.sections import fuel_of
 
 FAINT = 10.0
 """Per cent of OF that go with one of p_c, from which on a mixture is not told. Source: the technique's own measure: at
@@ -59,7 +60,7 @@ def reconstruct(firing: Firing) -> Reconstructed:
         if "p_chamber" not in firing.measured:
             raise AbsentError(firing.log.lacks("p_chamber"))
         shape = firing.shape
-        theory = Theory.of(shape.oxidizer_enthalpy, shape.throat_area, shape.exit_area)
+        theory = Theory.of(shape.oxidizer_enthalpy, shape.throat_area, shape.exit_area, fuel_of(firing.definition.fuel))
         gathered = gather(firing, theory)
         found = courses(gathered.inputs, theory)
         _fits(gathered, found)

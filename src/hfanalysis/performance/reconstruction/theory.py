@@ -9,6 +9,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.engine.nozzle import characteristic_velocity, expand_along
+from hfanalysis.thermo.fuels import PARAFFIN, Fuel
 from hfanalysis.thermo.shifting import shifting
 
 MIXTURES = np.geomspace(0.8, 60.0, 160)
@@ -28,14 +29,14 @@ class Theory:
     vacuum: Array
 
     @classmethod
-    def of(cls, enthalpy: float, throat_area: float, exit_area: float) -> Theory:
+    def of(cls, enthalpy: float, throat_area: float, exit_area: float, fuel: Fuel = PARAFFIN) -> Theory:
         """For nitrous oxide that enters with this ``enthalpy`` [J/kg], and a nozzle [m^2].
 
         Raises AbsentError where CEA is not installed.
         """
         pressure, mixture = (x.ravel() for x in np.meshgrid(PRESSURES, MIXTURES, indexing="ij"))
-        frozen = expand_along(combustion_of().kernel, pressure, mixture, enthalpy, throat_area, exit_area, 1e5)
-        gain, vacuum = shifting(pressure, mixture, enthalpy, exit_area / throat_area)
+        frozen = expand_along(combustion_of(fuel).kernel, pressure, mixture, enthalpy, throat_area, exit_area, 1e5)
+        gain, vacuum = shifting(pressure, mixture, enthalpy, exit_area / throat_area, fuel)
         shape = (PRESSURES.size, MIXTURES.size)
         c_star = gain * characteristic_velocity(frozen[2], frozen[3])
         return cls(c_star.reshape(shape), frozen[2].reshape(shape), frozen[3].reshape(shape), vacuum.reshape(shape))
