@@ -13,7 +13,17 @@ from hfanalysis.record.schema import DERIVED
 
 DOCS = Path(__file__).parents[2] / "docs"
 GUIDE = (DOCS / "test-toml.md").read_text(encoding="utf-8")
-OF_ENGINES = {"length", "ullage", "dip_tube", "outer_diameter", "polytropic_exponent", "C_i", "a", "n"}
+OF_ENGINES = {
+    "length",
+    "ullage",
+    "dip_tube",
+    "outer_diameter",
+    "polytropic_exponent",
+    "C_i",
+    "a",
+    "n",
+    "nitrogen_pressure",
+}
 """Keys that the sections share with engine files, which alone need them."""
 
 

@@ -7,7 +7,7 @@ from math import pi
 
 from hfanalysis.assembly import rocket
 from hfanalysis.assembly.burnt_gas import combustion_of
-from hfanalysis.assembly.tank import TankBuilt, properties, temperature
+from hfanalysis.assembly.tank import TankBuilt, nitrogen_mass, properties, temperature
 from hfanalysis.assembly.tank import tank as tank
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.feed_line import FeedSystem
@@ -168,6 +168,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
         vehicle=flying if isinstance(flying, Vehicle) else None,
         ambient_pressure=ambient_pressure(file),
         oxidizer_enthalpy=combustion.PROPEP_OXIDIZER_ENTHALPY if file.model.conventions == "report" else None,
+        nitrogen_mass=nitrogen_mass(needs, built.volume),
     )
     return _that_flows(needs, made)
 
@@ -187,7 +188,7 @@ def _dead_volume(needs: Needs) -> float:
 
 def _that_flows(needs: Needs, made: unsteady.Engine) -> unsteady.Engine:
     """The engine, if its tank can push anything through the line at all."""
-    at_rest = float(made.saturation.pressure(made.temperature))
+    at_rest = made.tank_pressure
     loss = made.feed.constant_losses[0] if made.feed.constant_losses else 0.0
     ambient = made.ambient
     if at_rest - loss <= ambient:
@@ -205,8 +206,10 @@ def scaled(needs: Needs, made: unsteady.Engine, oxidizer_mass: float, of_ratio: 
     """
     fuel = oxidizer_mass / of_ratio
     steady_grain(needs).port_radius(fuel)
-    volume = made.feed.volume * oxidizer_mass / made.oxidizer_mass
-    return replace(made, oxidizer_mass=oxidizer_mass, fuel_mass=fuel, feed=replace(made.feed, volume=volume))
+    grown = oxidizer_mass / made.oxidizer_mass
+    feed = replace(made.feed, volume=made.feed.volume * grown)
+    nitrogen = made.nitrogen_mass * grown
+    return replace(made, oxidizer_mass=oxidizer_mass, nitrogen_mass=nitrogen, fuel_mass=fuel, feed=feed)
 
 
 def casing_diameter(file: EngineFile) -> float | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
-from hfanalysis.engine.tank import split
+from hfanalysis.engine.tank import nitrogen_pressure, split
 from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.steady_design import injector, sizing
@@ -48,9 +48,34 @@ def temperature(needs: Needs) -> float:
 
 
 def saturated(needs: Needs) -> injector.Saturated:
-    """Pressure [Pa] and density [kg/m^3] of the liquid in the tank; InputError where its temperature does not say."""
+    """Pressure [Pa] and density [kg/m^3] of the liquid in the tank, under nitrogen where that is stated; InputError
+    where its temperature does not say."""
     t, source = temperature(needs), properties(needs.file)
-    return injector.Saturated(float(source.pressure(t)), float(source.liquid_density(t)))
+    return injector.Saturated(float(source.pressure(t)) + _nitrogen(needs), float(source.liquid_density(t)))
+
+
+def _nitrogen(needs: Needs) -> float:
+    """What nitrogen adds to the tank's pressure [Pa]; InputError where the stated pressure is that of no such tank."""
+    stated = needs.file.tank.nitrogen_pressure
+    if stated is None:
+        return 0.0
+    own = float(properties(needs.file).pressure(temperature(needs)))
+    if stated.value <= own:
+        raise InputError(
+            f"{needs.file.where('tank', 'nitrogen_pressure')}: found {stated.value / 1e5:.4g} bar; expected more than "
+            f"the {own / 1e5:.4g} bar of the nitrous oxide itself"
+        )
+    return stated.value - own
+
+
+def nitrogen_mass(needs: Needs, volume: float) -> float:
+    """Nitrogen [kg] above the liquid of a tank of ``volume`` [m^3], an ideal gas beside the vapor; none where no
+    pressure is stated."""
+    added = _nitrogen(needs)
+    if added == 0.0:
+        return 0.0
+    load = needs.value(needs.file.tank.oxidizer_mass, "tank", "oxidizer_mass").value
+    return added / nitrogen_pressure(properties(needs.file), volume, load, temperature(needs), 1.0)
 
 
 def tank(needs: Needs, load: float | None = None) -> TankBuilt:

@@ -138,6 +138,7 @@ class TankAlone:
         c = np.concatenate([composition.constants, np.zeros(len(GIVEN))])
         state = np.zeros(len(STATES))
         state[[eq.TANK, eq.TEMPERATURE, eq.RADIUS]] = engine.oxidizer_mass, engine.temperature, engine.port_radius
+        state[eq.NITROGEN] = engine.nitrogen_mass
         state = np.concatenate([state, composition.initial(engine)])
         equations = engine.equations(composition)._replace(rates=rates_alone.address, c=c)
         return cls(engine, composition, equations, state)

@@ -75,6 +75,15 @@ def split(saturation: Saturation, volume: float, mass: float, temperature: float
     return TankSplit(liquid, mass - liquid)
 
 
+def nitrogen_pressure(saturation: Saturation, volume: float, mass: float, temperature: float, nitrogen: float) -> float:
+    """What ``nitrogen`` [kg] in the ullage of a saturated tank adds to its pressure [Pa]; a tank of ``volume`` [m^3]
+    with ``mass`` [kg] of nitrous oxide at ``temperature`` [K]."""
+    if nitrogen == 0.0:
+        return 0.0
+    liquid = split(saturation, volume, mass, temperature).liquid * float(saturation.liquid_volume(temperature)[0])
+    return nitrogen * SPECIFIC_NITROGEN * temperature / max(volume - liquid, LEAST_ULLAGE)
+
+
 @law
 def compressibility(pressure: Real, volume: Real, mass: Real, temperature: Real) -> Real:
     """Z = p V / (m R T) [-] of the vapor at the end of the liquid (report, eq. 4.2); [Pa], [m^3], [kg], [K]."""

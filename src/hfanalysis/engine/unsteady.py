@@ -33,6 +33,7 @@ from hfanalysis.engine.grain import Grain, flux_power, oxidizer_flux
 from hfanalysis.engine.model import PAD, rates
 from hfanalysis.engine.phases import RunHistory
 from hfanalysis.engine.sites import ENVIRONMENT, SITES
+from hfanalysis.engine.tank import nitrogen_pressure
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
@@ -59,8 +60,8 @@ class Engine:
     ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of
     the liquid or vapor leaving the tank. ``spare_web`` [m] of fuel behind the grain's wall burns on (for fits in which
     the end of the fuel is an observation of its own), and at ``fuel_end`` [s] the fire is out whatever web is left (for
-    fits in which that instant is known). An engine without a ``vehicle`` stands at
-    ``ambient_pressure`` [Pa].
+    fits in which that instant is known). ``nitrogen_mass`` [kg] presses on the liquid from the start. An engine without
+    a ``vehicle`` stands at ``ambient_pressure`` [Pa].
     """
 
     saturation: Saturation
@@ -83,12 +84,20 @@ class Engine:
     oxidizer_enthalpy: float | None = None
     spare_web: float = 0.0
     fuel_end: float = inf
+    nitrogen_mass: float = 0.0
     effects: tuple[Active, ...] = field(default=())
 
     @property
     def grain(self) -> Grain:
         """The fuel grain."""
         return Grain(self.grain_length, self.outer_radius, self.fuel_density, self.a, self.n)
+
+    @property
+    def tank_pressure(self) -> float:
+        """At ignition [Pa]: that of the saturated liquid, and of the nitrogen above it."""
+        return float(self.saturation.pressure(self.temperature)) + nitrogen_pressure(
+            self.saturation, self.feed.volume, self.oxidizer_mass, self.temperature, self.nitrogen_mass
+        )
 
     @property
     def port_radius(self) -> float:
@@ -234,7 +243,7 @@ def initial(e: Engine, composition: Composition) -> Array:
     The chamber starts full of equilibrium gas at ambient pressure and at the O/F that enters (0/0 in the report).
     """
     ambient = e.ambient
-    p_t = float(e.saturation.pressure(e.temperature))
+    p_t = e.tank_pressure
     density = float(e.saturation.liquid_density(e.temperature))
     stated = (e.feed.constant_losses or NO_STATED_LOSSES)[0]
     flow = line_flow(e.feed.area, e.feed.loss_factor, stated, density, p_t - ambient)
@@ -247,7 +256,7 @@ def initial(e: Engine, composition: Composition) -> Array:
     mass = ambient * chamber_volume(e.dead_volume, r, e.grain_length) / rt
     oxidizer, burnt = mass * ratio / (1.0 + ratio), mass / (1.0 + ratio)
     altitude = 0.0 if e.vehicle is None else e.vehicle.launch_altitude
-    own = [0.0, 0.0, oxidizer * enthalpy, 0.0, 0.0, 1.0, 1.0]
+    own = [e.nitrogen_mass, 0.0, oxidizer * enthalpy, 0.0, 0.0, 1.0, 1.0]
     base = [e.oxidizer_mass, e.temperature, r, oxidizer, burnt, altitude, 0.0, 0.0, *own]
     return np.concatenate([base, composition.initial(e)])
 
@@ -285,7 +294,7 @@ def check(engine: Engine) -> None:
     if e.fuel_mass >= full:
         raise ValueError(f"{e.fuel_mass:.3f} kg of fuel do not fit a grain that is full at {full:.3f} kg")
     loss = e.feed.constant_losses[0] if e.feed.constant_losses is not None else 0.0
-    pressure = float(s.pressure(e.temperature)) - loss
+    pressure = e.tank_pressure - loss
     if pressure <= e.ambient:
         raise ValueError(f"nothing flows: {pressure:.0f} Pa behind the feed line against {e.ambient:.0f} Pa outside")
 

@@ -132,6 +132,9 @@ class Statements(Section):
         for i, exclusion in enumerate(self.exclude):
             exclusion.check_channels(self.channels, "exclude", i)
         self._check_left()
+        if self.tank is not None and self.tank.nitrogen_pressure is not None:
+            words = "is of an engine file; a test's log tells the pressure of its tank, and whether it is supercharged"
+            raise Refused(words, "tank", "nitrogen_pressure")
         if self.feed is not None and self.feed.p_loss is not None:
             raise Refused("a test has K_loss here, which a log may bear out; not a constant loss", "feed", "p_loss")
 

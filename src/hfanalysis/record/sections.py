@@ -82,7 +82,8 @@ def _exponent(found: Any) -> Value | str:
 
 @section
 class Tank(Section):
-    """[tank]: tank and feed line; volume [m^3], oxidizer mass loaded before the valve opens [kg], temperature [K]."""
+    """[tank]: tank and feed line; volume [m^3], oxidizer mass loaded before the valve opens [kg], temperature [K];
+    ``nitrogen_pressure``: that of a supercharged tank before the valve opens [Pa]."""
 
     volume: Volume | None = None
     oxidizer_mass: Mass | None = None
@@ -92,6 +93,7 @@ class Tank(Section):
     ullage: Share | None = None
     dip_tube: DipTubeSection | None = None
     polytropic_exponent: Annotated[Value | str, PlainValidator(_exponent)] | None = None
+    nitrogen_pressure: Annotated[Value, quantity("pressure", POSITIVE)] | None = None
 
     def check(self) -> None:
         if self.volume is None or self.oxidizer_mass is None:
