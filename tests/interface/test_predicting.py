@@ -264,6 +264,13 @@ def test_a_plan_at_fault_is_refused(root: Path, base: Base, old: str, new: str, 
         planned(load_planned(path), base)
 
 
+def test_a_test_whose_n_no_engine_has_is_nothing_to_predict_from(root: Path, base: Base) -> None:
+    calibration = base.found.calibration.but(n=Quantity(-0.3, "", 0.1))
+    odd = replace(base, found=replace(base.found, calibration=calibration))
+    with pytest.raises(AbsentError, match=r"HF4: it cannot be predicted from: -0\.30 is its n"):
+        planned(load_planned(plan_of(root, "HF5", "20 degC", "odd")), odd)
+
+
 @pytest.mark.parametrize("tests", [1, 2, 3, 5])
 def test_bands_by_the_scatter_hold_nine_of_ten_further_tests(base: Base, tests: int) -> None:
     """C_i of tests about one mean, and of a further one: how often it is in the band about those that are known."""

@@ -73,7 +73,7 @@ CONSTANTS = (
     "volume", "area", "loss_factor", "polytropic_exponent", "liquid_loss", "vapor_loss", "grain_length", "a", "n",
     "dead_volume", "fuel_density", "throat_area", "exit_area", "outer_radius", "oxidizer_enthalpy", "dry_mass",
     "drag_area", "climb", "launch_altitude", "ambient_pressure", "flies", "fuel_mass", "oxidizer_mass", "temperature",
-    "spare_web", "fuel_end",
+    "spare_web", "fuel_end", "nitrogen_mass",
 )  # fmt: skip
 """SI. A negative liquid_loss stands for the quadratic law, a NaN oxidizer_enthalpy for that of what leaves the tank, a
 NaN polytropic_exponent for c_p/c_v when the liquid runs out, a NaN ambient_pressure for that of the altitude, an
@@ -82,7 +82,7 @@ infinite fuel_end [s] for the end of the web; parameters of effects follow."""
 (VOLUME, AREA, LOSS_FACTOR, POLYTROPIC_EXPONENT, LIQUID_LOSS, VAPOR_LOSS, GRAIN_LENGTH, REGRESSION_A, REGRESSION_N,
  DEAD_VOLUME, FUEL_DENSITY, THROAT_AREA, EXIT_AREA, OUTER_RADIUS, OXIDIZER_ENTHALPY, DRY_MASS, DRAG_AREA, CLIMB,
  LAUNCH_ALTITUDE, AMBIENT_PRESSURE, FLIES, FUEL_MASS, OXIDIZER_MASS, INITIAL_TEMPERATURE,
- SPARE_WEB, FUEL_END) = range(26)  # fmt: skip
+ SPARE_WEB, FUEL_END, NITROGEN_MASS) = range(27)  # fmt: skip
 
 KEEPS, KEPT_TANK, KEPT_CHAMBER, KEPT_NOZZLE, KEPT = 0, 1, 10, 22, 30
 """Where in :attr:`Equations.kept` stands whether evaluations leave their parts there, where those of tank, chamber and

@@ -82,7 +82,7 @@ def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
     if i in (eq.ALTITUDE, eq.SPEED):
         return bool(c[eq.FLIES] > 0.0)
     if i in (eq.NITROGEN, eq.CHAMBER_NITROGEN):
-        return terms > 0
+        return terms > 0 or bool(c[eq.NITROGEN_MASS] > 0.0)
     if i == eq.ENTHALPY:
         return bool(np.isnan(c[eq.OXIDIZER_ENTHALPY]))
     if i in (eq.COLD, eq.COLD_ENERGY):

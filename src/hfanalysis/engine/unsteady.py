@@ -218,7 +218,7 @@ class Burn:
 
 
 def constants(e: Engine) -> Array:
-    """The engine's numbers [SI] in the order of CONSTANTS, (26,)."""
+    """The engine's numbers [SI] in the order of CONSTANTS, (27,)."""
     liquid_loss, vapor_loss = e.feed.constant_losses or NO_STATED_LOSSES
     v = e.vehicle
     exponent = np.nan if e.polytropic_exponent is None else e.polytropic_exponent
@@ -230,7 +230,7 @@ def constants(e: Engine) -> Array:
         e.feed.volume, e.feed.area, e.feed.loss_factor, exponent, liquid_loss, vapor_loss, e.grain_length, e.a, e.n,
         e.dead_volume, e.fuel_density, e.throat_area, e.exit_area, e.outer_radius, enthalpy, *rocket,
         e.ambient, float(v is not None), e.fuel_mass, e.oxidizer_mass, e.temperature, e.spare_web,
-        e.fuel_end,
+        e.fuel_end, e.nitrogen_mass,
     )  # fmt: skip
     out = np.array(values)
     assert out.size == len(CONSTANTS)

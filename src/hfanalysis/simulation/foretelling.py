@@ -15,6 +15,7 @@ from hfanalysis.assembly.calibrated import exponent, loss_factor
 from hfanalysis.engine.batch import burn_many
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
+from hfanalysis.errors import AbsentError
 from hfanalysis.inference.full_run import LONGEST_BURN
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.prediction import Scatter
@@ -74,9 +75,14 @@ class Planned:
 def planned(plan: PlannedTest, base: Base, effects: bool = True, temperature: str | None = None) -> Planned:
     """The planned geometry, load and ``temperature`` (default: the plan's) with the constants of a test.
 
-    Raises InputError where the plan lacks what the model needs.
+    Raises InputError where the plan lacks what the model needs, AbsentError where the test has no n that an engine can
+    have.
     """
     calibration = base.found.calibration if effects else base.without
+    n = calibration.n.value
+    if n is None or not 0.0 <= n <= 2.0:
+        told = calibration.n.reason if n is None else f"{n:.2f} is its n; an engine has one between 0 and 2"
+        raise AbsentError(f"test {base.name}: it cannot be predicted from: {told}")
     acting = base.found.adopted.acting if effects else ()
     content = _content(plan, base, calibration, temperature)
     file = engine_of(content, plan.path, b"")
