@@ -13,6 +13,7 @@ import argparse
 import json
 import shutil
 import sys
+import tempfile
 import tomllib
 import traceback
 from collections.abc import Sequence
@@ -28,7 +29,8 @@ from benchmarks.blind.folder import digest as digest_of
 from benchmarks.studies import one_thread, percent, put
 from simulated.worlds.pairs import SETS, Pair, plan, write_pair
 
-CACHE = Path(__file__).resolve().parents[1] / ".cache" / "prediction"
+ROOT = Path(__file__).resolve().parents[1]
+CACHE = ROOT / ".cache" / "prediction"
 RIVALS = {"as_last_time": "as last time", "without_effects": "without effects"}
 LEAST, MOST, LEAST_OF_EACH = 0.85, 0.95, 0.80
 """What is asked of bands of 90 %: the share of all quantities that they hold, from and to, and of each, from."""
@@ -70,7 +72,8 @@ def run_one(name: str, study: Study) -> dict[str, Any]:
     found: dict[str, Any] = {"pair": name, "effects": pair.effects, "digest": study.digest}
     try:
         write_pair(pair, root)
-        found |= predicted(pair, root, study.bare)
+        answer = json.loads((root / "answers" / f"{pair.tests[1]}.json").read_text(encoding="utf-8"))
+        found |= predicted(pair.tests, answer["temperature"], root, study.bare) | {"true": answer["scatter"]}
     except Exception as error:
         from hfanalysis.interface.ending import plainly
 
@@ -80,19 +83,18 @@ def run_one(name: str, study: Study) -> dict[str, Any]:
     return {**found, "seconds": perf_counter() - began}
 
 
-def predicted(pair: Pair, root: Path, bare: bool) -> dict[str, Any]:
-    """Diagnose and adopt, unless ``bare``; predict and score."""
+def predicted(tests: tuple[str, str], temperature: str, root: Path, bare: bool) -> dict[str, Any]:
+    """The second of two tests from the first, which is diagnosed, and what is named adopted, unless ``bare``."""
     from hfanalysis.interface import predicting
     from hfanalysis.interface.bringing import bring
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.simulation.foretelling import logs_of
 
-    first, second = pair.tests
+    first, second = tests
     adopted = () if bare else adopt_named(root, first)
-    answer = json.loads((root / "answers" / f"{second}.json").read_text(encoding="utf-8"))
-    predicting.predict(plan_of(root, second, answer["temperature"]), [first], root)
+    predicting.predict(plan_of(root, second, temperature), [first], root)
     score = predicting.score(second, root)
-    both = [bring("calibrate", root, test).read(Calibration) for test in pair.tests]
+    both = [bring("calibrate", root, test).read(Calibration) for test in tests]
     return {
         "adopted": adopted,
         "scored": {
@@ -100,8 +102,36 @@ def predicted(pair: Pair, root: Path, bare: bool) -> dict[str, Any]:
             for quantity, s in score.scored.items()
         },
         "moved": {name: values[1] - values[0] for name, values in logs_of(both).items()},
-        "true": answer["scatter"],
     }
+
+
+def replicas() -> list[str]:
+    """HF4 and HF5, each from the other, with the temperature that its own log tells: with effects and without."""
+    lines = [
+        "| replica | from | effects adopted | bands that hold | mean error | as last time |",
+        "|---|---|---|---|---|---|",
+    ]
+    for first, second in (("HF4", "HF5"), ("HF5", "HF4")):
+        for bare in (True, False):
+            with tempfile.TemporaryDirectory() as scratch:
+                root = Path(scratch)
+                for test in (first, second):
+                    shutil.copytree(ROOT / "raw_tests" / test, root / "raw_tests" / test)
+                found = predicted((first, second), _of_the_log(root, second), root, bare)
+            scored = list(found["scored"].values())
+            held, errors = [s["holds"] for s in scored], [abs(s["error"]) for s in scored]
+            last = [abs(s["rivals"]["as_last_time"]) for s in scored]
+            adopted = ", ".join(found["adopted"]) or "none"
+            lines.append(f"| {second} | {first} | {adopted} | {sum(held)} of {len(held)} | {percent(mean(errors))} | "
+                         f"{percent(mean(last))} |")  # fmt: skip
+    return lines
+
+
+def _of_the_log(root: Path, test: str) -> str:
+    from hfanalysis.interface.bringing import bring
+    from hfanalysis.interface.of_test import engine_of_test
+
+    return f"{engine_of_test(bring('validate', root, test)).full.engine.temperature:.2f} K"
 
 
 def adopt_named(root: Path, test: str) -> tuple[str, ...]:
@@ -201,7 +231,7 @@ def main() -> int:
                 file.flush()
                 print(f"{name}: {_said(found)}", file=sys.stderr, flush=True)
     rows = [row for row in rows_of(kept, digest) if row["pair"] in names]
-    lines = figures(rows)
+    lines = [*figures(rows), "", *replicas()] if not asked.bare else figures(rows)
     print("\n".join(lines))
     if asked.write:
         put(asked.write, "prediction", lines)
