@@ -27,7 +27,7 @@ from typing import Any
 from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.studies import one_thread, percent, put
-from simulated.worlds.pairs import SETS, Pair, plan, write_pair
+from simulated.worlds.pairs import SETS, plan, write_pair
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".cache" / "prediction"
