@@ -11,7 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.charts import svg
 from hfanalysis.charts.colors import style_of
 from hfanalysis.charts.envelope import envelope
-from hfanalysis.charts.style import sheet
+from hfanalysis.charts.style import alone, ground
 from hfanalysis.drafting.columns import Column
 from hfanalysis.drafting.document import facts, plain
 from hfanalysis.drafting.guesses import Judged
@@ -21,8 +21,6 @@ PANEL = 170.0
 """Height of a column's panel [px]."""
 AIR = 8.0
 """Above the first of them [px]."""
-_ALONE = "svg { background: var(--paper); color: var(--ink); font-family: sans-serif; }"
-"""What stands on the page's body otherwise."""
 
 
 def picture(found: Surveyed) -> str:
@@ -31,7 +29,7 @@ def picture(found: Surveyed) -> str:
     height = PANEL * len(panels) + AIR
     placed = "".join(f'<g transform="translate(0 {PANEL * i + AIR:.0f})">{part}</g>' for i, part in enumerate(panels))
     head = f'<svg class="chart" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {svg.WIDTH:.0f} {height:.0f}"'
-    return f"{head}><style><![CDATA[{sheet()}{_ALONE}]]></style>{placed}</svg>\n"
+    return f"{head}><style><![CDATA[{alone()}]]></style>{ground(svg.WIDTH, height)}{placed}</svg>\n"
 
 
 def _panel(found: Surveyed, one: Judged, number: int) -> str:

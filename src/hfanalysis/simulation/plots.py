@@ -13,7 +13,7 @@ from hfanalysis.charts import svg
 from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.envelope import Envelope
-from hfanalysis.charts.style import sheet
+from hfanalysis.charts.style import alone, ground
 from hfanalysis.flight.histories import Flown
 from hfanalysis.products.prediction import Prediction
 from hfanalysis.simulation.over_temperature import NAMES, OverTemperature
@@ -24,9 +24,6 @@ _FLOW = "oxidizer flow [kg/s]"
 
 BESIDE = "raw"
 """Style of what stands beside a line."""
-
-_ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
-
 
 _DOWN = {"drogue": "under the drogue", "main": "under the main", "ballistic": "without parachutes"}
 
@@ -188,4 +185,5 @@ def chart(title: str, x_label: str, y_label: str, curves: Sequence[PlottedCurve]
         svg.line(plot, data, curve.style or next(colors), curve.name)
     drawn = str(svg.render(plot, "chart", title, f"{y_label} over {x_label}"))
     head, body = drawn.split(">", 1)
-    return f'{head} xmlns="http://www.w3.org/2000/svg"><style><![CDATA[{sheet()}{_ALONE}]]></style>{body}\n'
+    below = ground(svg.WIDTH, plot.height)
+    return f'{head} xmlns="http://www.w3.org/2000/svg"><style><![CDATA[{alone()}]]></style>{below}{body}\n'
