@@ -27,7 +27,7 @@ from typing import Any
 from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.studies import one_thread, percent, put
-from simulated.worlds.pairs import SETS, plan, write_pair
+from simulated.worlds.pairs import SETS, plan, tests_of, write_pair
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".cache" / "prediction"
@@ -72,8 +72,8 @@ def run_one(name: str, study: Study) -> dict[str, Any]:
     found: dict[str, Any] = {"pair": name, "effects": pair.effects, "digest": study.digest}
     try:
         write_pair(pair, root)
-        answer = json.loads((root / "answers" / f"{pair.tests[1]}.json").read_text(encoding="utf-8"))
-        found |= predicted(pair.tests, answer["temperature"], root, study.bare) | {"true": answer["scatter"]}
+        answer = json.loads((root / "answers" / f"{tests_of(pair)[1]}.json").read_text(encoding="utf-8"))
+        found |= predicted(tests_of(pair), answer["temperature"], root, study.bare) | {"true": answer["scatter"]}
     except Exception as error:
         from hfanalysis.interface.ending import plainly
 

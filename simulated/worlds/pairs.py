@@ -6,7 +6,7 @@ and the regression rate differ by a stand's own scatter, which no test states.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import exp, log, pi, sqrt
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from simulated.worlds import engines, laws, loggers
 from simulated.worlds.engines import LONGEST, simulated
 from simulated.worlds.hidden import sized
 from simulated.worlds.laws import World
-from simulated.worlds.plan import TARGETS, stands
+from simulated.worlds.plan import TARGETS, Test, stands
 from simulated.worlds.write import constants, fired, put
 
 SETS = {"scored": 7_000_000, "development": 8_000_000}
@@ -41,25 +41,12 @@ THRUST_TO_WEIGHT, DRAG = (6.0, 11.0), (0.4, 0.6)
 """Of the rocket that both fly in."""
 
 
-@dataclass(frozen=True)
-class Pair:
-    """Two tests to write, ``ID-1`` and ``ID-2``."""
-
-    id: str
-    effects: tuple[str, ...]
-    engine: str
-    logger: str
-    end: str
-    target: float
-    seed: int
-
-    @property
-    def tests(self) -> tuple[str, str]:
-        """Names of both."""
-        return f"{self.id}-1", f"{self.id}-2"
+def tests_of(pair: Test) -> tuple[str, str]:
+    """Names of both tests of a pair."""
+    return f"{pair.id}-1", f"{pair.id}-2"
 
 
-def plan(which: str, count: int) -> list[Pair]:
+def plan(which: str, count: int) -> list[Test]:
     """All pairs, always the same; every other one hides an effect of the library."""
     start = SETS[which]
     rng = np.random.default_rng(start)
@@ -70,11 +57,11 @@ def plan(which: str, count: int) -> list[Pair]:
         hidden = (names[i // 2],) if i % 2 else ()
         end = "late" if "fuel_sliver" in hidden else str(rng.choice(engines.ENDS, p=(0.1, 0.4, 0.2, 0.3)))
         target = exp(rng.uniform(log(TARGETS[0]), log(TARGETS[1])))
-        out.append(Pair(f"{which[0].upper()}{i:03d}", hidden, *of[i], end, target, start + i))
+        out.append(Test(f"{which[0].upper()}{i:03d}", "pair", hidden, *of[i], end, target, start + i))
     return out
 
 
-def write_pair(pair: Pair, root: Path) -> None:
+def write_pair(pair: Test, root: Path) -> None:
     """Write both tests."""
     rng = np.random.default_rng(pair.seed)
     world, logger = laws.draw(rng), loggers.LOGGERS[pair.logger]
@@ -85,7 +72,7 @@ def write_pair(pair: Pair, root: Path) -> None:
     spread = {name: exp(rng.uniform(log(SCATTER[0]), log(SCATTER[1]))) for name in ("C_i", "regression rate")}
     second = another(rng, first, pair.end, world, spread)
     rocket = _rocket(rng, first, world)
-    for name, stand in zip(pair.tests, (first, second), strict=True):
+    for name, stand in zip(tests_of(pair), (first, second), strict=True):
         case = Case(name, "pair", pair.effects, pair.target, pair.logger, pair.seed, pair.seed, stand=pair.id)
         made = fired(rng, case, stand, world, hidden, logger, with_)
         stated = stand.temperature + rng.normal(0.0, KNOWN_TO) - 273.15
