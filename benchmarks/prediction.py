@@ -24,6 +24,8 @@ from statistics import mean
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.studies import one_thread, percent, put
@@ -32,8 +34,8 @@ from simulated.worlds.pairs import SETS, plan, tests_of, write_pair
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".cache" / "prediction"
 RIVALS = {"as_last_time": "as last time", "without_effects": "without effects"}
-LEAST, MOST, LEAST_OF_EACH = 0.85, 0.95, 0.80
-"""What is asked of bands of 90 %: the share of all quantities that they hold, from and to, and of each, from."""
+FREEDOMS = (2, 3, 4, 6, 10, 30)
+"""Degrees of freedom that are tried."""
 
 
 @dataclass(frozen=True)
@@ -183,12 +185,23 @@ def figures(rows: Sequence[dict[str, Any]]) -> list[str]:
     for name in ("C_i", "regression rate") if done else ():
         spread = sqrt(mean(row["moved"][name] ** 2 for row in done) / 2.0)
         true = sqrt(mean(row["true"][name] ** 2 for row in done))
+        scale, freedom = fitted([row["moved"][name] for row in done])
         said = f"From test to test {name} as calibrated scatters by {100.0 * spread:.1f} %"
-        out += ["", f"{said} (root mean square; of the truth {100.0 * true:.1f} %)."]
+        law = f"Student's t of {freedom} degrees of freedom and {100.0 * scale:.1f} % fits it best"
+        out += ["", f"{said} (root mean square; of the truth {100.0 * true:.1f} %); {law}."]
     for row in rows:
         if "failure" in row:
             out += ["", f"- {row['pair']}: {row['failure'].strip().splitlines()[-1]}"]
     return out
+
+
+def fitted(moved: Sequence[float]) -> tuple[float, int]:
+    """Scale [-] and degrees of freedom of how far a test is from the stand's mean, by the differences of two."""
+    from scipy.stats import t
+
+    off = np.array(moved) / sqrt(2.0)
+    found = [(t.fit(off, f0=freedom, floc=0.0)[2], freedom) for freedom in FREEDOMS]
+    return max(found, key=lambda one: float(t.logpdf(off, one[1], scale=one[0]).sum()))
 
 
 def _row(name: str, of: Sequence[dict[str, Any]]) -> str:
