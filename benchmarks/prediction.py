@@ -25,7 +25,6 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-
 from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.studies import one_thread, percent, put

@@ -25,6 +25,7 @@ from hfanalysis.products.prediction import Foretold, Origin, Prediction
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
 from hfanalysis.simulation.foretelling import (
+    PRIOR_FREEDOM,
     PRIOR_SCATTER,
     QUANTITIES,
     Base,
@@ -95,20 +96,24 @@ def test_draws_have_the_errors_of_the_constants_together(plan: PlannedTest, base
     assert np.std([c.oxidizer for c in drawn]) == pytest.approx(0.01, rel=0.05)
 
 
-def test_scatter_between_tests_is_a_prior_until_three_tell_it(base: Base) -> None:
+def test_scatter_between_tests_is_what_stands_have_and_what_these_tests_show(base: Base) -> None:
     def with_c(value: float) -> Base:
         calibration = base.found.calibration.but(C_i=Quantity(value, "", 0.01))
         return replace(base, found=replace(base.found, calibration=calibration))
 
+    prior = PRIOR_SCATTER["C_i"]
     one, two = scatter_of([base])["C_i"], scatter_of([base, base])["C_i"]
-    assert (one.std, one.freedom) == (PRIOR_SCATTER, None)
-    assert one.drawn == pytest.approx(PRIOR_SCATTER * sqrt(2.0))
-    assert two.drawn == pytest.approx(PRIOR_SCATTER * sqrt(1.5))
-    assert "NFPA 1125" in one.source
-    three = scatter_of([with_c(0.2), with_c(0.25), with_c(0.3)])["C_i"]
-    assert three.std == pytest.approx(np.std(np.log([0.2, 0.25, 0.3]), ddof=1))
+    assert (one.std, one.freedom) == (pytest.approx(prior), PRIOR_FREEDOM)
+    assert one.drawn == pytest.approx(prior * sqrt(2.0))
+    assert two.std == pytest.approx(prior * sqrt(PRIOR_FREEDOM / (PRIOR_FREEDOM + 1)))  # two alike tell of little
+    assert two.drawn == pytest.approx(two.std * sqrt(1.5))
+    assert "simulated stands" in one.source
+    apart = [0.2, 0.25, 0.3]
+    three = scatter_of([with_c(value) for value in apart])["C_i"]
+    squares = PRIOR_FREEDOM * prior**2 + 2.0 * np.var(np.log(apart), ddof=1)
+    assert three.std == pytest.approx(sqrt(squares / (PRIOR_FREEDOM + 2)))
     assert three.drawn == pytest.approx(three.std * sqrt(4.0 / 3.0))
-    assert three.freedom == 2
+    assert three.freedom == PRIOR_FREEDOM + 2
     shifts = [shift["C_i"] for shift in to_mean([with_c(0.2), with_c(0.3)])]
     assert shifts == pytest.approx([0.5 * log(1.5), -0.5 * log(1.5)])
 
@@ -273,16 +278,17 @@ def test_a_test_whose_n_no_engine_has_is_nothing_to_predict_from(root: Path, bas
 
 @pytest.mark.parametrize("tests", [1, 2, 3, 5])
 def test_bands_by_the_scatter_hold_nine_of_ten_further_tests(base: Base, tests: int) -> None:
-    """C_i of tests about one mean, and of a further one: how often it is in the band about those that are known."""
+    """Stands that scatter as stands do, C_i of tests about one mean, and of a further one: how often it is in the band
+    about those that are known."""
     rng = np.random.default_rng(7)
-    spread = PRIOR_SCATTER if tests < 3 else 0.15
-    known, new = 0.25 * np.exp(spread * rng.standard_normal((600, tests))), spread * rng.standard_normal(600)
+    spread = PRIOR_SCATTER["C_i"] * np.sqrt(PRIOR_FREEDOM / rng.chisquare(PRIOR_FREEDOM, 600))
+    known, new = 0.25 * np.exp(spread[:, None] * rng.standard_normal((600, tests))), spread * rng.standard_normal(600)
     held = []
     for values, further in zip(known, new, strict=True):
         found = [base.found.calibration.but(C_i=Quantity(float(value), "", 0.01)) for value in values]
         bases = [replace(base, found=replace(base.found, calibration=calibration)) for calibration in found]
         scatter, shift = scatter_of(bases)["C_i"], to_mean(bases)[0]["C_i"]
-        drawn = rng.standard_normal(400) if scatter.freedom is None else rng.standard_t(scatter.freedom, 400)
+        drawn = rng.standard_t(scatter.freedom or 0, 400)
         low, high = log(values[0] / 0.25) + shift + scatter.drawn * np.quantile(drawn, (0.05, 0.95))
         held.append(low <= further <= high)
     assert np.mean(held) == pytest.approx(0.90, abs=0.035)

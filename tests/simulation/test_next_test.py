@@ -14,6 +14,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.products.engines import NextTests
 from hfanalysis.simulation import next_test
+from hfanalysis.simulation.foretelling import PRIOR_SCATTER
 from hfanalysis.simulation.next_test import CHANGES, next_tests
 
 LAW = {"names": ["n", "ln_a"], "std": [0.05, 0.25], "correlation": [[1.0, -0.99], [-0.99, 1.0]]}
@@ -77,7 +78,7 @@ def test_how_well_the_fired_load_is_known_is_no_part_of_the_next_engine_s() -> N
 
 def test_without_scatter_between_tests_more_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     with_it = by_name(found("n"))
-    monkeypatch.setattr(next_test, "PRIOR_SCATTER", 1e-6)
+    monkeypatch.setattr(next_test, "PRIOR_SCATTER", dict.fromkeys(PRIOR_SCATTER, 1e-6))
     without = by_name(found("n"))
     assert without["two thirds of the holes"] < 0.9 * with_it["two thirds of the holes"]
 

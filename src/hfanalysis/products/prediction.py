@@ -26,7 +26,7 @@ class Scatter(Part):
 
     std: Annotated[float, Is("relative standard deviation from test to test", "")]
     drawn: Annotated[float, Is("the same about the mean of the tests that the constants are from", "")]
-    freedom: Annotated[int | None, Is("degrees of freedom where it is of the tests; null: a prior", "")]
+    freedom: Annotated[int | None, Is("degrees of freedom of Student's t; null in older ones: normal", "")]
     source: Annotated[str, Is("where it is from")]
 
 

@@ -34,19 +34,19 @@ QUANTITIES = {"total_impulse": "N s", "peak_thrust": "N", "peak_chamber_pressure
               "apogee": "m"}  # fmt: skip
 """What is predicted, with units."""
 
-PRIOR_SCATTER = 0.067
-"""Relative standard deviation, from one test of a stand to the next, of C_i and of the regression rate [-], where fewer
-than FEWEST tests tell. Source: NFPA 1125 certifies no motor whose total impulse differs by more among its firings; that
-C_i and the rate share it is by choice. No test or replica of this package was used for it."""
-
-OF_THE_FIRED = ("oxidizer_mass", "volume", "fuel_mass")
-"""Names of ``joint`` that are of the test that was fired: what the plan states takes their place."""
-
 RATE = "regression rate"
 """What scatters beside C_i."""
 
-FEWEST = 3
-"""Tests from which on their own scatter is taken. Source: by choice; of two, one number tells the deviation."""
+PRIOR_SCATTER = {"C_i": 0.03, RATE: 0.04}
+"""Relative standard deviation, from one test of a stand to the next, that stands have, as far as their own tests do not
+tell it [-]. Evidence: `python -m benchmarks.prediction --set development --bare`, on simulated stands that predictions
+are not scored on; no test or replica of this package was used for it."""
+
+PRIOR_FREEDOM = 4
+"""Degrees of freedom of that: how many tests it is worth [-]. Evidence: the same."""
+
+OF_THE_FIRED = ("oxidizer_mass", "volume", "fuel_mass")
+"""Names of ``joint`` that are of the test that was fired: what the plan states takes their place."""
 
 
 @dataclass(frozen=True)
@@ -118,19 +118,21 @@ def _content(plan: PlannedTest, base: Base, calibration: Calibration, temperatur
 def scatter_of(bases: Sequence[Base]) -> dict[str, Scatter]:
     """How far tests of the stand differ in C_i and in the regression rate, one relative standard deviation each.
 
-    A further test differs from the mean of k tests by s sqrt(1 + 1/k), which is what is drawn; s that is of these tests
-    has Student's distribution with k - 1 degrees of freedom.
+    What is known of stands at large, PRIOR_SCATTER, counts as PRIOR_FREEDOM tests beside the stand's own k. A further
+    test differs from the mean of them by s sqrt(1 + 1/k), which is what is drawn, with Student's distribution.
     """
-    return {name: _scatter(values) for name, values in logs_of([base.found.calibration for base in bases]).items()}
+    return {
+        name: _scatter(PRIOR_SCATTER[name], values)
+        for name, values in logs_of([base.found.calibration for base in bases]).items()
+    }
 
 
-def _scatter(values: list[float]) -> Scatter:
+def _scatter(prior: float, values: Sequence[float]) -> Scatter:
     k = len(values)
-    if k < FEWEST:
-        std, freedom = PRIOR_SCATTER, None
-        source = f"a prior: NFPA 1125's limit on the impulse of a motor's firings; {k} of {FEWEST} tests are there"
-    else:
-        std, freedom, source = float(np.std(values, ddof=1)), k - 1, f"of the {k} tests"
+    freedom = PRIOR_FREEDOM + k - 1
+    std = sqrt((PRIOR_FREEDOM * prior**2 + float(np.square(np.subtract(values, np.mean(values))).sum())) / freedom)
+    own = f"the {k} tests and " if k > 1 else ""
+    source = f"{own}{100.0 * prior:.1f} % of simulated stands, as if of {PRIOR_FREEDOM} tests"
     return Scatter(std=std, drawn=std * sqrt(1.0 + 1.0 / k), freedom=freedom, source=source)
 
 
@@ -211,8 +213,7 @@ def changes(
 
 
 def _between(scatter: Scatter, rng: np.random.Generator) -> float:
-    normal = rng.standard_normal() if scatter.freedom is None else rng.standard_t(scatter.freedom)
-    return float(scatter.drawn * normal)
+    return float(scatter.drawn * rng.standard_t(scatter.freedom))
 
 
 def _std(value: Value | None) -> float:

@@ -23,7 +23,7 @@ from hfanalysis.products.engines import NextTest, NextTests, SensorWorth
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.simulation import flown
 from hfanalysis.simulation.errors import off_by
-from hfanalysis.simulation.foretelling import PRIOR_SCATTER
+from hfanalysis.simulation.foretelling import PRIOR_SCATTER, RATE
 from hfanalysis.simulation.spread import factor_of
 
 COMMAND = "hfa next"
@@ -112,7 +112,7 @@ def next_tests(file: EngineFile, effects: Adopted, wanted: str | None = None, se
     return NextTests(
         engine=file.engine.id, target=target, unit=unit, value=_value(file, engine, target), std=now,
         tests=tuple(rows), sensors=() if again is None else tuple(_sensors(values, again)),
-        assumed={**USUAL, "C_i and regression rate, from test to test": PRIOR_SCATTER},
+        assumed={**USUAL, **{f"{name}, from test to test": std for name, std in PRIOR_SCATTER.items()}},
     )  # fmt: skip
 
 
@@ -124,7 +124,7 @@ def _draws(file: EngineFile, needs: Needs, seed: int) -> Draws:
     return Draws(
         {name: fired[:, i] for i, name in enumerate(names) if name not in OWN},
         {name: further[:, i] for i, name in enumerate(names) if name in OWN},
-        PRIOR_SCATTER * rng.standard_normal((DRAWS, 2)),
+        rng.standard_normal((DRAWS, 2)) * [PRIOR_SCATTER["C_i"], PRIOR_SCATTER[RATE]],
         DRAWS,
     )
 
