@@ -213,7 +213,7 @@ def changes(
 
 
 def _between(scatter: Scatter, rng: np.random.Generator) -> float:
-    return float(scatter.drawn * rng.standard_t(scatter.freedom))
+    return float(scatter.drawn * rng.standard_t(scatter.freedom or PRIOR_FREEDOM))
 
 
 def _std(value: Value | None) -> float:
