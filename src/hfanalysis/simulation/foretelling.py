@@ -37,12 +37,12 @@ QUANTITIES = {"total_impulse": "N s", "peak_thrust": "N", "peak_chamber_pressure
 RATE = "regression rate"
 """What scatters beside C_i."""
 
-PRIOR_SCATTER = {"C_i": 0.03, RATE: 0.04}
+PRIOR_SCATTER = {"C_i": 0.02, RATE: 0.024}
 """Relative standard deviation, from one test of a stand to the next, that stands have, as far as their own tests do not
 tell it [-]. Evidence: `python -m benchmarks.prediction --set development --bare`, on simulated stands that predictions
 are not scored on; no test or replica of this package was used for it."""
 
-PRIOR_FREEDOM = 4
+PRIOR_FREEDOM = 3
 """Degrees of freedom of that: how many tests it is worth [-]. Evidence: the same."""
 
 OF_THE_FIRED = ("oxidizer_mass", "volume", "fuel_mass")
