@@ -44,6 +44,14 @@ def test_a_channel_without_any_other_samples_is_absent_with_its_reason(tmp_path:
     assert "thrust" in marked(log, health_of("thrust", "unusable"), definition)
 
 
+def test_of_a_channel_that_is_gone_what_holds_throughout_is_said_alone(tmp_path: Path) -> None:
+    log, definition = fire.ingested(tmp_path, fire.columns())
+    rows = finding("unusable", "thrust", start=2.0, end=2.1, evidence="20 rows repeat the one before them")
+    channel = ChannelHealth(verdict="unusable", findings=(rows, finding("unusable", "thrust")))
+    reason = usable(log, Health(channels={"thrust": channel}, between=(), warnings=()), definition).lacks("thrust")
+    assert reason.endswith("no usable thrust: zero: it reads 76 N")
+
+
 def test_what_the_engineer_trusts_is_used(tmp_path: Path) -> None:
     log, definition = fire.ingested(tmp_path, fire.columns())
     assert usable(log, health_of("thrust", "unusable", overruled=True), definition) is not log

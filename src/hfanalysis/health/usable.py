@@ -29,7 +29,7 @@ def usable(log: TestLog, health: Health, definition: TestDefinition) -> TestLog:
     """The log [SI] without its unusable stretches; a channel that has no other samples is not in it."""
     found = marked(log, health, definition)
     kept = {name: channel for name, channel in found.channels.items() if not _gone(channel, log[name])}
-    reasons = {name: why(unusable_findings(health.of(name))) for name in log.channels if name not in kept}
+    reasons = {name: why(_enough(unusable_findings(health.of(name)))) for name in log.channels if name not in kept}
     return replace(found, channels=kept, unusable=reasons)
 
 
@@ -77,6 +77,11 @@ def _zero_of(channel: Channel, firing: FiringSpan | None, definition: TestDefini
 def unusable_findings(health: ChannelHealth) -> list[Finding]:
     """The findings for which a channel is not used, throughout or from when to when."""
     return [f for f in health.findings if f.verdict == UNUSABLE and not f.overruled]
+
+
+def _enough(findings: list[Finding]) -> list[Finding]:
+    """What says why nothing is left of a channel: what holds throughout, where something does."""
+    return [finding for finding in findings if finding.whole] or findings
 
 
 def why(findings: Iterable[Finding]) -> str:
