@@ -140,7 +140,7 @@ def test_bands_hold_what_the_model_says_and_widen_by_what_it_missed(plan: Planne
     assert impulse.low < base.found.full.burnt.state("impulse")[-1] < impulse.high
     assert found.rivals["as_last_time"]["peak_thrust"] == base.measured["peak_thrust"]
     assert found.rivals["without_effects"]["total_impulse"].value == pytest.approx(11908.3, rel=1e-3)
-    assert misses_of([base])["t_v"] == pytest.approx(log(6.164 / 5.975), rel=0.01)
+    assert misses_of(base)["t_v"] == pytest.approx(log(6.164 / 5.975), rel=0.01)
     wrong = replace(base, measured={**base.measured, "total_impulse": Quantity(20_000.0, "N s")})
     wider = predict(plan, [wrong], origins, draws=100).predicted["total_impulse"]
     assert wider.high is not None

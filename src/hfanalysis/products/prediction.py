@@ -57,7 +57,7 @@ class Prediction(Part):
     ] = {}
     rivals: Annotated[dict[str, dict[str, Quantity]], Is("what others say: as_last_time, without_effects")]
     scatter: Annotated[dict[str, Scatter], Is("between tests of a stand, by constant")]
-    misses: Annotated[dict[str, float], Is("rms of ln(measured over model) in the tests, drawn on top", "")]
+    misses: Annotated[dict[str, float], Is("mean of ln(measured over model) in the tests, by which it is moved", "")]
     draws: Annotated[int, Is("engines drawn", "")]
     refused: Annotated[int, Is("of them, that cannot be run", "")]
     seed: Annotated[int, Is("of the draws", "")]

@@ -14,19 +14,20 @@ from hfanalysis.assembly import engine as build
 from hfanalysis.assembly.calibrated import exponent, loss_factor
 from hfanalysis.engine.batch import burn_many
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.grain import USUAL_N
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.full_run import LONGEST_BURN
-from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.calibration import Calibration, Joint
 from hfanalysis.products.prediction import Scatter
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs, engine_of
 from hfanalysis.record.planned import PlannedTest
 from hfanalysis.simulation import flown
 from hfanalysis.simulation.errors import off_by
 from hfanalysis.simulation.of_test import OfTest
 from hfanalysis.units import Value
-from hfanalysis.validate.model_errors import lower_factor
+from hfanalysis.validate.model_errors import lower_factor, together
 
 COMMAND = "hfa predict"
 
@@ -79,10 +80,11 @@ def planned(plan: PlannedTest, base: Base, effects: bool = True, temperature: st
     have.
     """
     calibration = base.found.calibration if effects else base.without
-    n = calibration.n.value
-    if n is None or not 0.0 <= n <= 2.0:
-        told = calibration.n.reason if n is None else f"{n:.2f} is its n; an engine has one between 0 and 2"
-        raise AbsentError(f"test {base.name}: it cannot be predicted from: {told}")
+    n = law_of(calibration, together(base.found.full.engine, calibration)).n
+    if not 0.0 <= n <= 2.0:
+        raise AbsentError(
+            f"test {base.name}: it cannot be predicted from: {n:.2f} is its n; an engine has one between 0 and 2"
+        )
     acting = base.found.adopted.acting if effects else ()
     content = _content(plan, base, calibration, temperature)
     file = engine_of(content, plan.path, b"")
@@ -99,6 +101,42 @@ def _built(file: EngineFile) -> Engine:
     return build.engine(needs, build.tank(needs))
 
 
+@dataclass(frozen=True)
+class Law:
+    """a [SI] and n [-] that a further test burns by, and the lower factor of the constants' covariance [SI]."""
+
+    a: float
+    n: float
+    factor: Array
+
+
+def law_of(calibration: Calibration, joint: Joint) -> Law:
+    """As calibrated; of a test that does not tell a and n apart, along the line that it does tell, with the n that
+    fuels show, USUAL_N: the rate at the test's own flux stays.
+
+    ``joint``: errors of the constants together. Raises AbsentError where there is no law.
+    """
+    a, n = calibration.a.value, calibration.n.value
+    if a is None or n is None:
+        raise AbsentError(f"a and n are missing: {calibration.n.reason or calibration.a.reason}")
+    std = np.array(joint.std)
+    factor = lower_factor(np.array(joint.correlation).reshape(len(std), -1)) * std[:, None]
+    if calibration.n.verdict != NOT_IDENTIFIABLE:
+        return Law(a, n, factor)
+    covariance = factor @ factor.T
+    along = covariance[:, joint.names.index("n")]
+    gain = along / (along[joint.names.index("n")] + USUAL_N[1] ** 2)
+    covariance -= np.outer(gain, along)
+    own = np.sqrt(np.diag(covariance))
+    scale = np.where(own > 0.0, own, 1.0)
+    moved = gain * (USUAL_N[0] - n)
+    return Law(
+        a * exp(moved[joint.names.index("ln_a")]),
+        n + moved[joint.names.index("n")],
+        lower_factor(covariance / np.outer(scale, scale)) * own[:, None],
+    )
+
+
 def _content(plan: PlannedTest, base: Base, calibration: Calibration, temperature: str | None) -> dict[str, Any]:
     """What an engine file of the planned test would state."""
     own = {name: dict(plan.content.get(name, {})) for name in ("tank", "injector", "grain", "chamber", "nozzle")}
@@ -107,7 +145,8 @@ def _content(plan: PlannedTest, base: Base, calibration: Calibration, temperatur
         own["tank"]["temperature"] = temperature
     own["tank"]["polytropic_exponent"] = exponent(calibration)[0]
     own["injector"]["C_i"] = calibration.C_i.value
-    own["grain"] |= {"a": calibration.a.value, "n": calibration.n.value}
+    law = law_of(calibration, together(base.found.full.engine, calibration))
+    own["grain"] |= {"a": law.a, "n": law.n}
     about = base.found.definition.model
     model = {"conventions": about.conventions, "properties": about.properties}
     site = {"site": plan.content["site"]} if "site" in plan.content else {}
@@ -190,8 +229,7 @@ def changes(
     as :func:`to_mean` has it of this test."""
     rng = np.random.default_rng(seed)
     joint, engine, file = base.found.joint, base.found.full.engine, plan.file
-    correlation = np.array(joint.correlation).reshape(len(joint.names), -1)
-    factor = lower_factor(correlation) * np.array(joint.std)[:, None]
+    factor = law_of(base.found.calibration, joint).factor
     for _ in range(count):
         off = dict(zip(joint.names, factor @ rng.standard_normal(len(joint.names)), strict=True))
         for name in OF_THE_FIRED:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import log, sqrt
+from math import log
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly import rocket
+from hfanalysis.engine.grain import USUAL_N
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.measured_flight.firing import launch_altitude
 from hfanalysis.products.prediction import Foretold, Origin, Prediction, Score, Scored
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.planned import PlannedTest
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.simulation.foretelling import QUANTITIES, Base, Planned, changes, outcomes, planned, scatter_of, to_mean
@@ -29,6 +30,10 @@ tenth of their width."""
 
 ENOUGH = 0.9
 """Share of the draws that have to have a quantity for a band of it [-]. Source: by choice, as the band's."""
+
+LASTS = 0.5
+"""Part of a miss of the model by which it is another in the next test, one standard deviation [-]. Source: by choice;
+docs/predict.md has how often bands held on simulated stands."""
 
 DAYS = (5, 10, 15, 20, 25, 30, 35)
 """Temperatures of the tank [degC] at which the prediction is told beside the planned one: from a spring morning to a
@@ -53,12 +58,11 @@ def predict(
 
     Every draw takes one of the tests in turn: its constants off by what is known of their errors together, C_i and the
     regression rate moved to the mean of the tests and off by how far tests of one stand differ, the plan's load and
-    temperature off by their own. Then comes how far the model was
-    off in those tests. Raises InputError where the plan or the tests do not fit.
+    temperature off by their own. What comes of it is moved by what the model missed in that test. Raises InputError where the plan or the tests do not fit.
     """
     _check(plan, bases, origins)
     plans = [planned(plan, base, temperature=temperature) for base in bases]
-    misses = misses_of(bases)
+    misses = [misses_of(base) for base in bases]
     table = _drawn(plan, bases, plans, misses, draws, seed)
     refused = int(np.isnan(table[:, 0]).sum())
     days = {
@@ -77,7 +81,9 @@ def predict(
         over_temperature=days,
         rivals={LAST: dict(bases[-1].measured), BARE: _without(plan, bases, temperature)},
         scatter=scatter_of(bases),
-        misses=misses,
+        misses={
+            name: float(np.mean([m[name] for m in misses if name in m])) for name in QUANTITIES if _any(misses, name)
+        },
         draws=draws,
         refused=refused,
         seed=seed,
@@ -98,10 +104,11 @@ def _check(plan: PlannedTest, bases: Sequence[Base], origins: Mapping[str, Origi
 
 
 def _drawn(
-    plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned], misses: Mapping[str, float], draws: int,
-    seed: int,
+    plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned], misses: Sequence[Mapping[str, float]],
+    draws: int, seed: int,
 ) -> Array:  # fmt: skip
-    """Outcomes of all draws, (draws, quantities), off by what the model ``misses``; each test has its share of them."""
+    """Outcomes of all draws, (draws, quantities), moved by what the model ``misses`` in each test, which has its share of
+    the draws."""
     scatter, stands, flying = scatter_of(bases), list[Engine](), list[Engine]()
     for i, (base, own, shift) in enumerate(zip(bases, plans, to_mean(bases), strict=True)):
         count = len(range(i, draws, len(bases)))
@@ -109,13 +116,16 @@ def _drawn(
             stands.append(change.of(own.stand))
             flying += [change.of(own.flying)] if own.flying is not None else []
     table = outcomes(stands, flying, _rail(plan))
+    counts = [len(range(i, draws, len(bases))) for i in range(len(bases))]
+    missed = np.repeat([[own.get(name, 0.0) for name in QUANTITIES] for own in misses], counts, axis=0)
     noise = np.random.default_rng([seed, 1]).standard_normal(table.shape)
-    return np.asarray(table * np.exp(noise * np.array([misses.get(name, 0.0) for name in QUANTITIES])))
+    return np.asarray(table * np.exp(missed * (1.0 + LASTS * noise)))
 
 
 def _of_a_day(
-    plan: PlannedTest, bases: Sequence[Base], temperature: str, misses: Mapping[str, float], draws: int, seed: int
-) -> dict[str, Foretold]:
+    plan: PlannedTest, bases: Sequence[Base], temperature: str, misses: Sequence[Mapping[str, float]], draws: int,
+    seed: int,
+) -> dict[str, Foretold]:  # fmt: skip
     """Bands with the tank at another temperature; with the reason where the load does not fit it there."""
     try:
         plans = [planned(plan, base, temperature=temperature) for base in bases]
@@ -147,15 +157,18 @@ def _band(values: Array, unit: str) -> Foretold:
     return Foretold(value=float(middle), low=float(low), high=float(high), unit=unit)
 
 
-def misses_of(bases: Sequence[Base]) -> dict[str, float]:
-    """Root mean square over the tests of ln(measured/model) [-], by quantity, as far as a test tells it."""
-    found: dict[str, list[float]] = {name: [] for name in QUANTITIES}
-    for base in bases:
-        for name, model in _model(base).items():
-            measured = base.measured.get(name)
-            if measured is not None and measured.value and measured.value > 0.0 and model > 0.0:
-                found[name].append(log(measured.value / model))
-    return {name: sqrt(float(np.mean(np.square(logs)))) for name, logs in found.items() if logs}
+def misses_of(base: Base) -> dict[str, float]:
+    """ln(measured/model) of a test [-], by quantity, as far as it tells it."""
+    found = {}
+    for name, model in _model(base).items():
+        measured = base.measured.get(name)
+        if measured is not None and measured.value and measured.value > 0.0 and model > 0.0:
+            found[name] = log(measured.value / model)
+    return found
+
+
+def _any(misses: Sequence[Mapping[str, float]], name: str) -> bool:
+    return any(name in own for own in misses)
 
 
 def _model(base: Base) -> dict[str, float]:
@@ -190,6 +203,12 @@ def _notes(plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned]) -
         *([] if acting else ["no effect is adopted in these tests: without_effects is the model itself"]),
         *([f"taken as exact, for no +/- is stated: {', '.join(exact)}"] if exact else []),
         *(f"{base.name}: {name} is {q.verdict}" for base in bases for name, q in _doubted(base).items()),
+        *(
+            f"{base.name} does not tell a and n apart: predicted with an n of {own.stand.n:.2f}, beside the "
+            f"{USUAL_N[0]} +/- {USUAL_N[1]} that fuels show"
+            for base, own in zip(bases, plans, strict=True)
+            if base.found.calibration.n.verdict == NOT_IDENTIFIABLE
+        ),
     ]
 
 
