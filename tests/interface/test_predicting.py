@@ -131,7 +131,7 @@ def test_effects_are_drawn_within_their_bounds(plan: PlannedTest, base: Base) ->
     assert planned(plan, other, effects=False).stand.effects == ()
 
 
-def test_bands_hold_what_the_model_says_and_widen_by_what_it_missed(plan: PlannedTest, base: Base) -> None:
+def test_predictions_are_moved_by_what_the_model_missed_and_widen_by_half_of_it(plan: PlannedTest, base: Base) -> None:
     origins = {"HF4": Origin(raw={"log.csv": "x"}, test_toml="y", products={}, effects=())}
     found = predict(plan, [base], origins, draws=100)
     impulse = found.predicted["total_impulse"]
@@ -142,10 +142,13 @@ def test_bands_hold_what_the_model_says_and_widen_by_what_it_missed(plan: Planne
     assert found.rivals["without_effects"]["total_impulse"].value == pytest.approx(11908.3, rel=1e-3)
     assert misses_of(base)["t_v"] == pytest.approx(log(6.164 / 5.975), rel=0.01)
     wrong = replace(base, measured={**base.measured, "total_impulse": Quantity(20_000.0, "N s")})
-    wider = predict(plan, [wrong], origins, draws=100).predicted["total_impulse"]
-    assert wider.high is not None
-    assert wider.low is not None
-    assert wider.high - wider.low > 3.0 * (impulse.high - impulse.low)
+    told = predict(plan, [wrong], origins, draws=100)
+    moved = told.predicted["total_impulse"]
+    assert moved.value == pytest.approx(20_000.0, rel=0.1)  # the same test again: what it measured
+    assert told.misses["total_impulse"] == pytest.approx(log(20_000.0 / 11908.3), abs=0.01)
+    assert moved.high is not None
+    assert moved.low is not None
+    assert moved.high - moved.low > 3.0 * (impulse.high - impulse.low)
     with pytest.raises(InputError, match="once each"):
         predict(plan, [base, base], origins, draws=20)
     with pytest.raises(InputError, match="is among the tests"):

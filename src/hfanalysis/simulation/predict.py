@@ -58,7 +58,8 @@ def predict(
 
     Every draw takes one of the tests in turn: its constants off by what is known of their errors together, C_i and the
     regression rate moved to the mean of the tests and off by how far tests of one stand differ, the plan's load and
-    temperature off by their own. What comes of it is moved by what the model missed in that test. Raises InputError where the plan or the tests do not fit.
+    temperature off by their own. What comes of it is moved by what the model missed in that test. Raises InputError
+    where the plan or the tests do not fit.
     """
     _check(plan, bases, origins)
     plans = [planned(plan, base, temperature=temperature) for base in bases]
@@ -81,9 +82,7 @@ def predict(
         over_temperature=days,
         rivals={LAST: dict(bases[-1].measured), BARE: _without(plan, bases, temperature)},
         scatter=scatter_of(bases),
-        misses={
-            name: float(np.mean([m[name] for m in misses if name in m])) for name in QUANTITIES if _any(misses, name)
-        },
+        misses=_on_average(misses),
         draws=draws,
         refused=refused,
         seed=seed,
@@ -107,8 +106,8 @@ def _drawn(
     plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned], misses: Sequence[Mapping[str, float]],
     draws: int, seed: int,
 ) -> Array:  # fmt: skip
-    """Outcomes of all draws, (draws, quantities), moved by what the model ``misses`` in each test, which has its share of
-    the draws."""
+    """Outcomes of all draws, (draws, quantities), moved by what the model ``misses`` in each test, which has its share
+    of the draws."""
     scatter, stands, flying = scatter_of(bases), list[Engine](), list[Engine]()
     for i, (base, own, shift) in enumerate(zip(bases, plans, to_mean(bases), strict=True)):
         count = len(range(i, draws, len(bases)))
@@ -167,8 +166,9 @@ def misses_of(base: Base) -> dict[str, float]:
     return found
 
 
-def _any(misses: Sequence[Mapping[str, float]], name: str) -> bool:
-    return any(name in own for own in misses)
+def _on_average(misses: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    of = {name: [own[name] for own in misses if name in own] for name in QUANTITIES}
+    return {name: float(np.mean(values)) for name, values in of.items() if values}
 
 
 def _model(base: Base) -> dict[str, float]:
