@@ -11,8 +11,9 @@ from tests.products.filled import filled
 from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import probability_of, row_of, stand_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
+from hfanalysis.campaign.skill import skill_sentence
 from hfanalysis.campaign.words import agreement, diagnosed
-from hfanalysis.products.campaign import Campaign, Diagnosed
+from hfanalysis.products.campaign import Campaign, Diagnosed, Predicted
 from hfanalysis.products.diagnosis import NamedEffect
 from hfanalysis.record.definition import load_definition
 from hfanalysis.stages.base import silent
@@ -121,3 +122,20 @@ def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product:
     assert '<a href="index.html">All tests</a>' in text
     assert "<strong>0.93</strong> named" in text
     assert "&lt; 0.01" in text
+
+
+def test_the_record_of_predictions_is_on_the_page_with_both_rivals(product: Campaign) -> None:
+    assert "Predictions" not in page(product)
+    errors = {"predicted": 0.02, "as_last_time": 0.2, "without_effects": 0.05}
+    found = {
+        "T9": Predicted(test="T9", held=5, of=6, mean_error=errors),
+        "T8": Predicted(test="T8", held=4, of=4, mean_error={**errors, "predicted": 0.04}),
+        "T7": Predicted(test="T7", reason="nothing of T7 can be compared"),
+    }
+    said = "Of 2 predictions 9 of 10 bands held: mean error 3.0 %, and 20.0 % as last time, 5.0 % without effects."
+    assert skill_sentence(found) == said
+    text = page(product.model_copy(update={"predictions": found}))
+    assert said in text
+    assert "5 of 6" in text
+    assert "nothing of T7 can be compared" in text
+    assert skill_sentence({}) == ""

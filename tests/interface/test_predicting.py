@@ -15,6 +15,7 @@ import pytest
 from benchmarks.prediction import plan_of
 from tests.cli.run import hfa
 
+from hfanalysis.campaign.skill import record
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import Adopted
@@ -22,6 +23,7 @@ from hfanalysis.interface import predicting
 from hfanalysis.interface.bringing import bring
 from hfanalysis.products.disk import read_json, sha256_file
 from hfanalysis.products.prediction import Foretold, Origin, Prediction
+from hfanalysis.progress import silent
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
 from hfanalysis.simulation.foretelling import (
@@ -225,6 +227,14 @@ def test_a_score_lays_the_test_over_it(root: Path, frozen: tuple[Path, str]) -> 
     assert told["mean_error"]["predicted"] < told["mean_error"]["as_last_time"]
     table = hfa("score", "HF5", "--root", root).out
     assert f"{told['held']} of 6 bands hold" in table
+
+
+def test_a_campaign_keeps_the_record_of_predictions(root: Path, frozen: tuple[Path, str]) -> None:
+    told = json.loads(hfa("score", "HF5", "--root", root, "--json").out)
+    found = record(root, ("HF4", "HF5"), None, silent)
+    assert (found["HF5"].held, found["HF5"].of) == (told["held"], told["of"])
+    assert found["HF5"].mean_error == told["mean_error"]
+    assert record(root, ("HF4",), None, silent) == {}
 
 
 def test_a_log_that_was_among_the_inputs_proves_nothing(root: Path, frozen: tuple[Path, str]) -> None:

@@ -9,9 +9,10 @@ from urllib.parse import quote
 from markupsafe import Markup, escape
 
 from hfanalysis.campaign.conclusions import conclusions
+from hfanalysis.campaign.skill import skill_sentence
 from hfanalysis.campaign.strips import strip
 from hfanalysis.campaign.words import HIDDEN, agreement, alone, diagnosed, regression_sentence
-from hfanalysis.products.campaign import Campaign, StandRow, TestRow, Together
+from hfanalysis.products.campaign import Campaign, Predicted, StandRow, TestRow, Together
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.names import called
@@ -30,6 +31,7 @@ def page(product: Campaign) -> str:
         overview=_overview(tests),
         lacking=[(test, diagnosed(row.diagnosis)) for test, row in tests.items()],
         missing=[(test, row.status, row.reason) for test, row in tests.items() if row.reason],
+        predictions=_predictions(product.predictions),
         stands=[(name, list(_stand(stand, tests))) for name, stand in product.stands.items()],
         has_pages=any(row.page for row in tests.values()),
         generated=sorted({row.source for row in tests.values() if row.source} - {"measured"}),
@@ -41,6 +43,25 @@ def _overview(tests: Mapping[str, TestRow]) -> Markup:
     columns = ("test", "kind", *(f">{head}" for head in heads))
     caption = "Measured performance, and the apogee predicted with it."
     return html.table("Tests", caption, columns, [_test(test, row) for test, row in tests.items()])
+
+
+def _predictions(found: Mapping[str, Predicted]) -> Markup:
+    """A row for each prediction; nothing where there is none."""
+    if not found:
+        return Markup()
+    columns = ("prediction", "test", ">bands that held", ">mean error", ">as last time", ">without effects")
+    caption = "Frozen before the tests were fired. The error of a test's own log is in no band."
+    rows = [(name, one.test, *_skill(one)) for name, one in found.items()]
+    said = skill_sentence(found)
+    table = html.table("Predictions", caption, columns, rows)
+    return (html.paragraph(said) if said else Markup()) + table
+
+
+def _skill(one: Predicted) -> tuple[str, ...]:
+    if not one.of:
+        return (one.reason or "–", "–", "–", "–")
+    errors = (one.mean_error.get(name) for name in ("predicted", "as_last_time", "without_effects"))
+    return (f"{one.held} of {one.of}", *("–" if e is None else f"{100.0 * e:.1f} %" for e in errors))
 
 
 def _test(test: str, row: TestRow) -> tuple[Any, ...]:

@@ -13,6 +13,7 @@ from hfanalysis.campaign.conclusions import conclusions
 from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended, Work, run_all
+from hfanalysis.campaign.skill import record, skill_sentence
 from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
 from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.paper import new_table, paper
@@ -61,7 +62,8 @@ def campaign(request: CampaignRequest) -> int:
         stands = dict.fromkeys(row.stand for row in rows.values() if row.stand)
         by_stand = {stand: {test: row for test, row in rows.items() if row.stand == stand} for stand in stands}
         said = {stand: stand_row(own, request.root, request.out, progress) for stand, own in by_stand.items()}
-        product = Campaign(tests=rows, stands=said)
+        predictions = record(request.root, definitions, request.out, progress)
+        product = Campaign(tests=rows, stands=said, predictions=predictions)
     folder.mkdir(parents=True, exist_ok=True)
     write_json(folder / product.file, product)
     with atomic(folder / "campaign.html") as scratch:
@@ -139,6 +141,8 @@ def _print(product: Campaign) -> None:
     console.print(table)
     for test, row in product.tests.items():
         console.print(Text(f"  {test}: the model lacks: {diagnosed(row.diagnosis)}"), soft_wrap=True)
+    if told := skill_sentence(product.predictions):
+        console.print(Text(f"  {told}"), soft_wrap=True)
     for name, stand in product.stands.items():
         if len(stand.tests) == 1:
             continue

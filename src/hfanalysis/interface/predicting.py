@@ -92,8 +92,12 @@ def _freeze(path: Path, text: str) -> None:
         scratch.unlink(missing_ok=True)
 
 
-def score(name: str, root: str | Path = ".", test: str | None = None, *, progress: Progress = silent) -> Score:
+def score(
+    name: str, root: str | Path = ".", test: str | None = None, *, out: Path | None = None, progress: Progress = silent
+) -> Score:
     """Lay a frozen prediction over its ``test`` (default: of the same id), as ``hfa score``.
+
+    ``out``: where the test's products are, instead of ``root/processed``.
 
     Raises InputError where there is no such prediction, or the test's log is among its inputs; AbsentError where
     nothing can be compared.
@@ -103,7 +107,7 @@ def score(name: str, root: str | Path = ".", test: str | None = None, *, progres
     if not path.is_file():
         raise InputError(f"{path}: not found; hfa predict writes it, before the test is fired")
     frozen = Prediction.from_json(read_json(path))
-    context = _brought(root, test or frozen.name, progress)
+    context = _brought(root, test or frozen.name, progress, out)
     return model.score(frozen, sha256_file(path), context.id, _raw(context), _measured(context), _products(context))
 
 
@@ -113,14 +117,14 @@ def _path(root: Path, name: str) -> Path:
     return root / FOLDER / f"{name}.json"
 
 
-def _brought(root: Path, test: str, progress: Progress) -> Context:
+def _brought(root: Path, test: str, progress: Progress, out: Path | None = None) -> Context:
     """As far as flight where there is a rocket, else validate."""
-    context = bring("validate", root, test, progress=progress)
+    context = bring("validate", root, test, out, progress=progress)
     if context.definition.rocket is not None:
         try:
-            context = bring("flight", root, test, progress=progress)
+            context = bring("flight", root, test, out, progress=progress)
         except AbsentError:  # an apogee is then what is lacking
-            return bring("validate", root, test, progress=progress)
+            return bring("validate", root, test, out, progress=progress)
     return context
 
 

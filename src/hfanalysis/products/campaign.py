@@ -121,6 +121,18 @@ class StandRow(Part):
     regression: Annotated[CommonLaw | NoLaw, Is("the law of all its tests, or the reason why there is none")]
 
 
+class Predicted(Part):
+    """How good a prediction was that was frozen before its test."""
+
+    test: Annotated[str, Is("that it is of")]
+    held: Annotated[int | None, Is("bands that hold", "")] = None
+    of: Annotated[int | None, Is("bands that can be compared", "")] = None
+    mean_error: Annotated[
+        Mapping[str, float | None], Is("mean size of the relative errors: predicted, as_last_time, without_effects", "")
+    ] = {}
+    reason: Annotated[str | None, Is("why it cannot be told")] = None
+
+
 class Campaign(Part):
     """Several tests, and their stands."""
 
@@ -128,3 +140,4 @@ class Campaign(Part):
 
     tests: Annotated[dict[str, TestRow], Is("by name")]
     stands: Annotated[dict[str, StandRow], Is("by name")]
+    predictions: Annotated[Mapping[str, Predicted], Is("of these tests, by the prediction's name")] = {}
