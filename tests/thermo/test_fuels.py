@@ -61,6 +61,7 @@ def test_an_engine_burns_what_its_file_states() -> None:
     other = file(name="acrylic", formula="C5H8O2", enthalpy="-4.3 MJ/kg")
     impulse = [simulate(one).product.total_impulse.value or 0.0 for one in (none, same, other)]
     assert impulse[1] == impulse[0]
+    assert [simulate(one).product.fuel for one in (none, other)] == ["paraffin", "acrylic"]
     assert impulse[2] > 1.01 * impulse[0]  # the report's engine burns rich of paraffin, and near the best of this one
     best = [design(one).product.optimum.of_ratio.value or 0.0 for one in (none, other)]
     assert best[1] < 0.75 * best[0]

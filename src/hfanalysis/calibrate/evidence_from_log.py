@@ -21,6 +21,7 @@ from hfanalysis.products.calibration import TankConstants
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.sections import fuel_of
 from hfanalysis.record.signals import Signal, line_at
 
 BLOCKS = 120
@@ -179,7 +180,7 @@ def _remarks(definition: TestDefinition, calibration: TankConstants, effects: Se
     return [
         f"oxidizer flow of the calibrated tank alone{nitrogen}, from the pressure that its liquid phase "
         f"extrapolates to; feed loss K_loss mdot^2 / rho; vapor exponent {m:.3f} ({known})",
-        beyond + "constant throat, even regression",
+        beyond + f"constant throat, even regression of {fuel_of(definition.fuel).name}",
     ]
 
 

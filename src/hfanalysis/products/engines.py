@@ -31,6 +31,7 @@ class EngineHead(Part):
     command: Annotated[str, Is("that made this")]
     conventions: Annotated[str, Is("corrected or report")]
     properties: Annotated[str, Is("of nitrous oxide: coolprop or report")]
+    fuel: Annotated[str, Is("what burns, by its name in [fuel]")] = "paraffin"
     oxidizer_enthalpy: Annotated[Enthalpy, Is("with which the oxidizer enters the chamber")]
 
 

@@ -291,7 +291,11 @@ def _design(material: EngineMaterial) -> Iterator[Block]:
 
 def _made(material: EngineMaterial) -> Iterator[Block]:
     product = material.product
-    rows = [("conventions", product.conventions), ("properties of nitrous oxide", product.properties)]
+    rows = [
+        ("conventions", product.conventions),
+        ("properties of nitrous oxide", product.properties),
+        ("fuel", product.fuel),
+    ]
     rows.append(("enthalpy of the oxidizer", product.oxidizer_enthalpy.of))
     rows += [(name.replace("_", " "), str(said)) for name, said in product.provenance.items() if isinstance(said, str)]
     yield html.table("What this was made from", "hfa simulate", ("what", "which"), rows)

@@ -8,6 +8,7 @@ from hfanalysis.assembly.engine import OxidizerEnthalpy
 from hfanalysis.products import engines
 from hfanalysis.products.disk import sha256_file
 from hfanalysis.record.engine_file import EngineFile
+from hfanalysis.record.sections import fuel_of
 from hfanalysis.version import __version__
 
 
@@ -18,6 +19,7 @@ def heading(file: EngineFile, command: str, enthalpy: OxidizerEnthalpy) -> dict[
         "command": command,
         "conventions": file.model.conventions,
         "properties": file.model.properties,
+        "fuel": fuel_of(file.fuel).name,
         "oxidizer_enthalpy": engines.Enthalpy(value=enthalpy.value, unit="J/kg", std=None, ci95=None, of=enthalpy.of),
     }
 
