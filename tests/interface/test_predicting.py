@@ -21,10 +21,11 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.interface import predicting
 from hfanalysis.interface.bringing import bring
+from hfanalysis.products.calibration import Joint
 from hfanalysis.products.disk import read_json, sha256_file
 from hfanalysis.products.prediction import Foretold, Origin, Prediction
 from hfanalysis.progress import silent
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
 from hfanalysis.simulation.foretelling import (
     PRIOR_FREEDOM,
@@ -32,6 +33,7 @@ from hfanalysis.simulation.foretelling import (
     QUANTITIES,
     Base,
     changes,
+    law_of,
     outcomes,
     planned,
     scatter_of,
@@ -287,6 +289,25 @@ def test_a_test_whose_n_no_engine_has_is_nothing_to_predict_from(root: Path, bas
     odd = replace(base, found=replace(base.found, calibration=calibration))
     with pytest.raises(AbsentError, match=r"HF4: it cannot be predicted from: -0\.30 is its n"):
         planned(load_planned(plan_of(root, "HF5", "20 degC", "odd")), odd)
+
+
+def test_where_a_and_n_are_not_told_apart_n_is_that_of_fuels_and_the_rate_stays(base: Base) -> None:
+    flux, std_n, std_rate = 150.0, 1.0, 0.05
+    std_a = float(np.hypot(std_rate, std_n * log(flux)))  # ln a = ln r - n ln G
+    mixed = -std_n * log(flux) / std_a
+    joint = Joint(names=("n", "ln_a"), std=(std_n, std_a), correlation=((1.0, mixed), (mixed, 1.0)))
+    unsure = base.found.calibration.but(
+        a=Quantity(5e-3, "", 1.0), n=Quantity(-0.3, "", std_n, verdict=NOT_IDENTIFIABLE)
+    )
+    law = law_of(unsure, joint)
+    assert law.n == pytest.approx(0.45, abs=0.05)
+    assert law.a * flux**law.n == pytest.approx(5e-3 * flux**-0.3, rel=0.01)
+    covariance = law.factor @ law.factor.T
+    assert np.sqrt(covariance[0, 0]) == pytest.approx(0.2, rel=0.05)
+    along = np.array([log(flux), 1.0])
+    assert np.sqrt(along @ covariance @ along) == pytest.approx(std_rate, rel=0.05)
+    sure = law_of(unsure.but(n=Quantity(0.3, "", 0.02)), joint)
+    assert (sure.a, sure.n) == (5e-3, 0.3)
 
 
 @pytest.mark.parametrize("tests", [1, 2, 3, 5])
