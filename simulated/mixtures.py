@@ -158,6 +158,7 @@ def _measured(
         burn_time=None,
     )
     definition = SimpleNamespace(
+        fuel=None,
         channels={"p_chamber": SimpleNamespace(tap="aft")}, grain=SimpleNamespace(mass=Value(mass, 0.0)),
         observed=observed, nozzle=SimpleNamespace(throat_radius=Value(of.throat, ERRORS["radius"])),
         ambient_pressure=Value(AMBIENT, 0.0),
