@@ -47,6 +47,19 @@ def test_a_port_measured_over_time_narrows_the_law_and_its_interval_holds_the_tr
     assert abs(log(rate["value"] / (truth["a"] * flux ** truth["n"]))) < 2.5 * rate["std"] / rate["value"]
 
 
+@pytest.mark.parametrize("factor", [2.0, 0.5])
+def test_a_reading_that_is_not_the_grain_s_port_is_not_used(factor: float, tmp_path: Path) -> None:
+    folder = tmp_path / "E"
+    measured(folder, 3, 0.0)
+    without = recover_regression(folder)["n"]
+    frame = pd.read_csv(folder / "log.csv")
+    frame["WEB (mm)"] *= factor
+    frame.to_csv(folder / "log.csv", index=False)
+    with (folder / "test.toml").open("a", encoding="utf-8") as file:
+        file.write('\n[channels.port_radius]\ncolumn = "WEB (mm)"\nunit = "mm"\naccuracy = "0.3 mm"\n')
+    assert recover_regression(folder)["n"]["value"] == pytest.approx(without["value"])
+
+
 def stated(folder: Path, observed: str, grain: str = GRAIN) -> Path:
     folder.mkdir()
     (folder / "log.csv").write_text("t\n0\n")

@@ -15,6 +15,7 @@ import pytest
 from benchmarks.prediction import plan_of
 from tests.cli.run import hfa
 
+from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.skill import record
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError, InputError
@@ -27,6 +28,7 @@ from hfanalysis.products.prediction import Foretold, Origin, Prediction
 from hfanalysis.progress import silent
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
+from hfanalysis.simulation import plots
 from hfanalysis.simulation.foretelling import (
     PRIOR_FREEDOM,
     PRIOR_SCATTER,
@@ -233,10 +235,34 @@ def test_a_score_lays_the_test_over_it(root: Path, frozen: tuple[Path, str]) -> 
 
 def test_a_campaign_keeps_the_record_of_predictions(root: Path, frozen: tuple[Path, str]) -> None:
     told = json.loads(hfa("score", "HF5", "--root", root, "--json").out)
-    found = record(root, ("HF4", "HF5"), None, silent)
+    well = Ended(0, "")
+    found = record(root, {"HF4": well, "HF5": well}, None, silent)
     assert (found["HF5"].held, found["HF5"].of) == (told["held"], told["of"])
     assert found["HF5"].mean_error == told["mean_error"]
-    assert record(root, ("HF4",), None, silent) == {}
+    assert record(root, {"HF4": well}, None, silent) == {}
+
+
+def test_a_test_that_killed_its_process_is_not_run_again_for_its_prediction(
+    root: Path, frozen: tuple[Path, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(predicting, "score", lambda *_, **__: pytest.fail("it was run again"))
+    found = record(root, {"HF5": Ended(1, "killed")}, None, silent)
+    assert found["HF5"].reason == "the run of its test ended with a defect"
+
+
+def test_a_prediction_that_has_no_number_is_frozen_without_a_picture(frozen: tuple[Path, str]) -> None:
+    lacking = Foretold(value=None, low=None, high=None, unit="", reason="few engines have one")
+    product = Prediction.from_json(read_json(frozen[0]))
+    empty = product.model_copy(update={"predicted": dict.fromkeys(product.predicted, lacking)})
+    assert plots.prediction(empty) is None
+
+
+def test_another_seed_moves_the_ends_of_the_bands_by_less_than_a_seventh_of_them(plan: PlannedTest, base: Base) -> None:
+    origins = {"HF4": Origin(raw={}, test_toml="", products={}, effects=())}
+    one, other = (predict(plan, [base], origins, seed=seed).predicted for seed in (1, 2))
+    for name in ("total_impulse", "peak_thrust", "peak_chamber_pressure", "t_v", "apogee"):
+        ends = np.array([[found[name].low, found[name].high] for found in (one, other)], dtype=float)
+        assert np.abs(np.diff(ends, axis=0)).max() < np.diff(ends[0])[0] / 7.0
 
 
 def test_a_log_that_was_among_the_inputs_proves_nothing(root: Path, frozen: tuple[Path, str]) -> None:

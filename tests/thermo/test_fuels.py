@@ -77,6 +77,8 @@ def test_an_engine_burns_what_its_file_states() -> None:
         ({"formula": "wax!", "enthalpy": "0 J/kg"}, "expected a formula such as C20H42"),
         ({"name": "wax"}, "expected a 'formula' with its enthalpy, or 'parts'"),
         ({"formula": "CH2", "enthalpy": "0 J/kg", "molar_enthalpy": "0 J/mol"}, "expected one of them"),
+        ({"formula": "C20H42", "molar_enthalpy": "+554 kJ/mol"}, "is the sign or the unit another"),
+        ({"formula": "C20H42", "enthalpy": "-46 MJ/kg"}, "one of combustion"),
         ({"parts": [{"formula": "CH2", "enthalpy": "0 J/kg", "share": "40 %"}]}, "100 % in all"),
     ],
 )

@@ -15,7 +15,7 @@ from hfanalysis.calibrate.head_pressure import before_nozzle_of
 from hfanalysis.calibrate.measured_pressures import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.unsteady import burn
+from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.products.segments import Segments
@@ -32,6 +32,10 @@ FINEST_CHAMBER_BLOCK = 0.02
 
 PORTS, LEAST_PORTS = 20, 3
 """Means of a measured port radius that are compared, and fewest of them. Source: by choice: a law has two constants."""
+
+FAR, QUICK = 3.0, 2.0
+"""Standard deviations of its sensor by which a port may be off the grain's, and times the mean rate by which it may
+have grown when it is first seen [-]. Source: by choice: a diameter or a web in the place of a radius is farther off."""
 
 BESIDE_END = 0.15
 """Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
@@ -69,11 +73,11 @@ def evidence_of(
     late = abs(t_v - burnt.liquid_out) if burnt.liquid_out is not None else 0.0
     if burn_time is not None:
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
-    ports, sensor = _ports(log, origin, start, end)
+    ports, sensor, odd = _ports(log, origin, engine, start, end)
     remarks = (
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
         *burning_of(segments, definition)[1],
-        *([f"port_radius, {ports.time.size} means to {ports.time[-1]:.2f} s"] if ports.time.size else []),
+        *([f"port_radius, {ports.time.size} means to {ports.time[-1]:.2f} s"] if ports.time.size else odd),
         *_remarks(definition, calibration, engine.effects),
     )
     covariance = covariance_of(draws, calibration, (*_stated_variances(definition), sensor**2))
@@ -84,18 +88,27 @@ def evidence_of(
     )  # fmt: skip
 
 
-def _ports(log: TestLog, origin: float, start: float, end: float) -> tuple[Ports, float]:
-    """Block means of the port's radius while the fuel burns, and one standard deviation of its sensor's bias [m]."""
+def _ports(
+    log: TestLog, origin: float, engine: Engine, start: float, end: float
+) -> tuple[Ports, float, tuple[str, ...]]:
+    """Block means of the port's radius while the fuel burns, one standard deviation of its sensor's bias [m], and why
+    they are none of this grain, where they are not."""
     channel = log.get("port_radius")
     if channel is None:
-        return NO_PORTS, 0.0
+        return NO_PORTS, 0.0, ()
     seen = Signal.of(channel).shifted(origin).between(start, end - BESIDE_END)
     width = max((end - start) / PORTS, seen.step)
     means = seen.reduced(width)
     if means.time.size < LEAST_PORTS:
-        return NO_PORTS, 0.0
+        return NO_PORTS, 0.0, ("port_radius has too few good samples in the burn",)
+    first, last = (float(means.value[i]) for i in (0, -1))
+    off, web = FAR * channel.accuracy, engine.outer_radius - engine.port_radius
+    most = engine.port_radius + off + QUICK * web * float(means.time[0]) / end
+    if not (engine.port_radius - off <= first <= most and last <= engine.outer_radius + off):
+        told = f"port_radius goes from {1e3 * first:.1f} to {1e3 * last:.1f} mm, and is not used: the grain's port has "
+        return NO_PORTS, 0.0, (f"{told}{1e3 * engine.port_radius:.1f} to {1e3 * engine.outer_radius:.1f} mm",)
     std = max(seen.noise / np.sqrt(max(width / seen.step, 1.0)), 0.1 * channel.accuracy)
-    return Ports(means.time, means.value, float(std)), channel.accuracy
+    return Ports(means.time, means.value, float(std)), channel.accuracy, ()
 
 
 def _wander(log: TestLog, segments: Segments, time: Array) -> Array:

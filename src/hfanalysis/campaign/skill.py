@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
+from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.interface import predicting
 from hfanalysis.products.campaign import Predicted
@@ -15,14 +16,17 @@ from hfanalysis.products.prediction import Prediction
 from hfanalysis.progress import Progress
 
 
-def record(root: Path, tests: Container[str], out: Path | None, progress: Progress) -> dict[str, Predicted]:
+def record(root: Path, tests: Mapping[str, Ended], out: Path | None, progress: Progress) -> dict[str, Predicted]:
     """Every prediction in ``root`` of one of the ``tests``, laid over it, by its name; with the reason where that
-    cannot be."""
+    cannot be. A test that ended with a defect of ours is not touched again."""
     found = {}
     for path in sorted((root / predicting.FOLDER).glob("*.json")):
         try:
             frozen = Prediction.from_json(read_json(path))
             if frozen.name not in tests:
+                continue
+            if tests[frozen.name].defect:
+                found[path.stem] = Predicted(test=frozen.name, reason="the run of its test ended with a defect")
                 continue
             score = predicting.score(path.stem, root, out=out, progress=progress)
         except (AbsentError, InputError, ValueError) as error:

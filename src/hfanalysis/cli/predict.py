@@ -32,7 +32,8 @@ def predict(
     for text in found.notes:
         tell(f"note: {text}")
     tell(f"{path}: written, never to be written over; SHA-256 {digest}")
-    tell(f"{path.with_suffix('.svg')}: the same over the temperature of the tank")
+    if path.with_suffix(".svg").is_file():
+        tell(f"{path.with_suffix('.svg')}: the same over the temperature of the tank")
     tell(f"next, once it has been fired: hfa score {path.stem}")
 
 

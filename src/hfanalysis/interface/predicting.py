@@ -73,8 +73,9 @@ def predict(
     origins = {context.id: _origin(context, base) for context, base in zip(contexts, bases, strict=True)}
     found = model.predict(stated, bases, origins, temperature, draws)
     _freeze(path, to_json(found))
-    with atomic(path.with_suffix(".svg")) as scratch:
-        scratch.write_text(plots.prediction(found), encoding="utf-8")
+    if (picture := plots.prediction(found)) is not None:
+        with atomic(path.with_suffix(".svg")) as scratch:
+            scratch.write_text(picture, encoding="utf-8")
     return path, sha256_file(path)
 
 

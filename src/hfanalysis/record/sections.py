@@ -44,6 +44,9 @@ LIQUID_DENSITY_LIMIT = 1250.0
 1230 kg/m^3 (CoolProp)."""
 
 _DENSITY = between(100.0, 20e3, "between 100 and 20000 kg/m^3")
+_FORMATION = (-10e6, 1.5e6)
+"""Heats of formation that solid fuels have [J/kg]. Source: by choice: sugars have -7, acrylic -4, paraffin -2, rubbers
+and styrenes up to +1 MJ/kg; the report's slip of a sign would be +1.96."""
 _AMBIENT = between(20e3, 120e3, "an absolute ambient pressure, between 0.2 and 1.2 bar")
 _LAUNCH = between(220.0, 330.0, "a temperature of the air, 220 to 330 K")
 _LOADABLE = between(182.0, 350.0, "a temperature at which nitrous oxide can be in a tank, 182 to 350 K")
@@ -172,11 +175,17 @@ def _fuel(name: str, formula: str, enthalpy: Value | None, molar_enthalpy: Value
     except ValueError as error:
         raise Refused(f"found {error}", "formula") from None
     mass = PARAFFIN.molar_mass if atoms == PARAFFIN.atoms else molar_mass(atoms)
-    if enthalpy is not None:
-        return Fuel(name, atoms, mass, enthalpy.value)
-    if molar_enthalpy is not None:
-        return Fuel(name, atoms, mass, 1e3 * molar_enthalpy.value / mass)
-    raise Refused("expected 'enthalpy' or 'molar_enthalpy': the heat of formation of what burns at 25 degC")
+    if enthalpy is None and molar_enthalpy is None:
+        raise Refused("expected 'enthalpy' or 'molar_enthalpy': the heat of formation of what burns at 25 degC")
+    found = enthalpy.value if enthalpy is not None else 1e3 * molar_enthalpy.value / mass if molar_enthalpy else 0.0
+    if not _FORMATION[0] <= found <= _FORMATION[1]:
+        low, high = (1e-6 * end for end in _FORMATION)
+        raise Refused(
+            f"found {1e-6 * found:.3g} MJ/kg; expected a heat of formation from {low:g} to {high:g} MJ/kg: "
+            "is the sign or the unit another, or is it one of combustion?",
+            "enthalpy" if enthalpy is not None else "molar_enthalpy",
+        )
+    return Fuel(name, atoms, mass, found)
 
 
 @section

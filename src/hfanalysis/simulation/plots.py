@@ -120,8 +120,9 @@ def over_temperature(found: OverTemperature) -> Chart | None:
     return _across("temperature", title, about, axis, [*within, *lines]) if lines else None
 
 
-def prediction(found: Prediction) -> str:
-    """What is predicted over the temperature of the tank, in percent of what is at the planned one, with its bands."""
+def prediction(found: Prediction) -> str | None:
+    """What is predicted over the temperature of the tank, in percent of what is at the planned one, with its bands;
+    None where there is nothing to draw."""
     days = np.array([float(day) for day in found.over_temperature])
     curves = []
     for name, words in NAMES.items():
@@ -136,7 +137,7 @@ def prediction(found: Prediction) -> str:
         )
         curves.append(PlottedCurve(days, middle, words, band=(low, high)))
     title = f"{found.name} against the temperature of the tank, with bands of {100.0 * found.band:.0f} %"
-    return chart(title, "temperature of the tank [degC]", "change [%]", curves)
+    return chart(title, "temperature of the tank [degC]", "change [%]", curves) if curves else None
 
 
 def _across(key: str, title: str, about: tuple[str, str], x_label: str, lines: Sequence[Series]) -> Chart:

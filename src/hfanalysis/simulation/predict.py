@@ -25,8 +25,8 @@ BAND = 0.90
 """Share of the draws within a band [-]. Source: by choice, as is usual of forecasts."""
 
 DRAWS = 400
-"""Engines drawn. Evidence: docs/predict.md: with another seed the ends of HF5's bands from HF4 move by less than a
-tenth of their width."""
+"""Engines drawn. Evidence: test_predicting.py: with another seed the ends of the bands move by less than a seventh of
+their width."""
 
 ENOUGH = 0.9
 """Share of the draws that have to have a quantity for a band of it [-]. Source: by choice, as the band's."""
@@ -43,7 +43,7 @@ OF_A_DAY = 100
 """Engines drawn at each of them. Source: by choice: a picture asks for less than a number."""
 
 LAST, BARE = "as_last_time", "without_effects"
-"""The rivals: what the last test measured, and the model without effects."""
+"""The rivals: what the last test measured, and the model without effects as it is, not moved by what it missed."""
 
 
 def predict(
@@ -200,12 +200,16 @@ def _notes(plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned]) -
     return [
         "no log of the planned test was read: neither the constants nor the scatter between tests were fitted on it",
         "the apogee is that of the engine as it fires on its stand; of drag, mass and wind the bands have nothing",
-        *([] if acting else ["no effect is adopted in these tests: without_effects is the model itself"]),
+        *(
+            []
+            if acting
+            else ["no effect is adopted in these tests: without_effects is the model, not moved by what it missed"]
+        ),
         *([f"taken as exact, for no +/- is stated: {', '.join(exact)}"] if exact else []),
         *(f"{base.name}: {name} is {q.verdict}" for base in bases for name, q in _doubted(base).items()),
         *(
-            f"{base.name} does not tell a and n apart: predicted with an n of {own.stand.n:.2f}, beside the "
-            f"{USUAL_N[0]} +/- {USUAL_N[1]} that fuels show"
+            f"{base.name} does not tell a and n apart: predicted with an n of {own.stand.n:.2f}, drawn to "
+            f"the {USUAL_N[0]} +/- {USUAL_N[1]} that fuels show"
             for base, own in zip(bases, plans, strict=True)
             if base.found.calibration.n.verdict == NOT_IDENTIFIABLE
         ),
