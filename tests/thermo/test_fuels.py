@@ -19,6 +19,7 @@ from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, equilibrium
 from hfanalysis.thermo.combustion_table import Nodes, build, gas_at
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.fuels import PARAFFIN, Fuel, atoms_of, blend, molar_mass
+from hfanalysis.thermo.shifting import expand
 
 ACRYLIC = Fuel("PMMA", atoms_of("C5H8O2"), molar_mass(atoms_of("C5H8O2")), -4.3e6)
 """A fuel with oxygen; its enthalpy is of the right size, and all the same for what is tested here."""
@@ -85,3 +86,10 @@ def test_an_engine_burns_what_its_file_states() -> None:
 def test_what_is_no_fuel_is_refused(fuel: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=rf"fuel.*{words}"):
         file(**fuel)
+
+
+def test_a_nozzle_s_shifting_flow_is_that_of_its_fuel() -> None:
+    found = expand(20e5, 5.0, fuel=ACRYLIC)
+    of_paraffin = expand(20e5, 5.0)
+    assert found.c_star == pytest.approx(found.frozen, rel=0.05)
+    assert abs(found.c_star / of_paraffin.c_star - 1.0) > 0.02
