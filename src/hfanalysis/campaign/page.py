@@ -50,7 +50,10 @@ def _predictions(found: Mapping[str, Predicted]) -> Markup:
     if not found:
         return Markup()
     columns = ("prediction", "test", ">bands that held", ">mean error", ">as last time", ">without effects")
-    caption = "Frozen before the tests were fired. The error of a test's own log is in no band."
+    caption = (
+        "As they were frozen; that it was before the firing, only a hash that was posted proves. The error of a test's "
+        "own log is in no band, and the model without effects is not moved by what it missed."
+    )
     rows = [(name, one.test, *_skill(one)) for name, one in found.items()]
     said = skill_sentence(found)
     table = html.table("Predictions", caption, columns, rows)
