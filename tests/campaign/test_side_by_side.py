@@ -200,3 +200,12 @@ def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch, tm
         pytest.raises(InputError, match="has no worker"),
     ):  # fmt: skip
         list(none.each(making, ["T1"], Work(tmp_path)))
+
+
+def test_a_process_that_ends_before_it_has_begun_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def ending(*_: object, **__: object) -> None:
+        raise RuntimeError("Nanny failed to start.")
+
+    monkeypatch.setattr(distributed, "LocalCluster", ending)
+    with pytest.raises(InputError, match=r"ended before it had begun .*expected memory for 3 of them"), Cluster(3):
+        pass

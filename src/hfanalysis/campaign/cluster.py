@@ -138,13 +138,19 @@ class Cluster:
                 yield client
                 return
             scratch = opened.enter_context(tempfile.TemporaryDirectory(prefix="hfanalysis-workers-"))
-            cluster = opened.enter_context(
-                LocalCluster(
-                    n_workers=self._jobs, threads_per_worker=1, processes=True, host=LOCAL, dashboard_address=None,
-                    scheduler_kwargs={"dashboard_address": f"{LOCAL}:0"}, local_directory=scratch,
-                    silence_logs=logging.CRITICAL,
-                )
-            )  # fmt: skip
+            try:
+                cluster = opened.enter_context(
+                    LocalCluster(
+                        n_workers=self._jobs, threads_per_worker=1, processes=True, host=LOCAL, dashboard_address=None,
+                        scheduler_kwargs={"dashboard_address": f"{LOCAL}:0"}, local_directory=scratch,
+                        silence_logs=logging.CRITICAL,
+                    )
+                )  # fmt: skip
+            except RuntimeError as error:
+                raise InputError(
+                    f"a process that would run tests ended before it had begun ({error}); expected memory for "
+                    f"{self._jobs} of them: fewer with --jobs, or say it again"
+                ) from None
             opened.enter_context(_kept_up(cluster, self._jobs))
             yield opened.enter_context(Client(cluster, set_as_default=False))
 
