@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 
 from hfanalysis.errors import InputError
@@ -48,12 +49,22 @@ def of_before(context: Context) -> list[Path]:
 
 def _readable(path: Path, stand: str) -> Iterator[TestDefinition]:
     try:
-        # most tests are of other stands: their names tell quicker than the whole file does
-        found = load_definition(path) if stand in path.read_text(encoding="utf-8", errors="replace") else None
-    except (InputError, OSError):
+        found = _as_it_is(path, stand, path.stat().st_mtime_ns, path.parent.stat().st_mtime_ns)
+    except OSError:
         return
     if found is not None and found.test.stand == stand:
         yield found
+
+
+@lru_cache(maxsize=4096)
+def _as_it_is(path: Path, stand: str, _changed: int, _folder_changed: int) -> TestDefinition | None:
+    """A definition of the stand as it is since it and its folder last changed; None where it cannot be read, or is
+    another stand's. A campaign asks for all of them at every stage of every test."""
+    try:
+        # most tests are of other stands: their names tell quicker than the whole file does
+        return load_definition(path) if stand in path.read_text(encoding="utf-8", errors="replace") else None
+    except InputError:
+        return None
 
 
 def nearest(context: Context) -> list[TestDefinition]:
