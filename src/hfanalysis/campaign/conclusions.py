@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import hypot
 
 from hfanalysis.campaign.pooling import DISAGREE
-from hfanalysis.products.campaign import EffectRow, StandRow, TestRow, Together
+from hfanalysis.products.campaign import CommonLaw, EffectRow, Odd, StandRow, TestRow, Together
 from hfanalysis.quantity import NORMAL_95, Quantity
 from hfanalysis.report.names import called
 from hfanalysis.wording.numbers import in_words, listed, shown
@@ -24,7 +24,12 @@ def conclusions(stand: StandRow, tests: Mapping[str, TestRow]) -> list[str]:
     if len(stand.tests) < 2:
         return []
     rows = {test: tests[test] for test in stand.tests}
-    return [*_constants(stand.constants, rows), *_with_holes(rows), *_effects(stand.effects, stand.tests)]
+    return [
+        *_constants(stand.constants, rows),
+        *_odd_ones(stand),
+        *_with_holes(rows),
+        *_effects(stand.effects, stand.tests),
+    ]
 
 
 def _constants(constants: Mapping[str, Together], rows: Mapping[str, TestRow]) -> Iterator[str]:
@@ -36,6 +41,32 @@ def _constants(constants: Mapping[str, Together], rows: Mapping[str, TestRow]) -
         if together.agreement is not None and not _agree(together):
             found = {test: rows[test].calibration[name] for test in together.tests}
             yield _apart(in_words(name), found)
+
+
+def _odd_ones(stand: StandRow) -> Iterator[str]:
+    """Which test does not fit the rest, by which number, and what else sets it apart."""
+    for name, together in stand.constants.items():
+        if together.odd is not None:
+            yield from _odd(together.odd, in_words(name))
+        for test in together.left:
+            yield f"{test} left the family of the {in_words(name)}: it is beyond the natural limits of all in order."
+    law = stand.regression
+    if isinstance(law, CommonLaw) and law.odd is not None:
+        yield from _odd(law.odd, f"regression rate at {law.flux:.0f} kg/(m² s)")
+
+
+def _odd(odd: Odd, words: str) -> Iterator[str]:
+    apart, rest = odd.apart.value or 0.0, odd.of.value or 0.0
+    by, off = abs(100.0 * apart / rest), abs(100.0 * (odd.apart.std or 0.0) / rest)
+    chance = "less than 0.001" if odd.probability < 1e-3 else f"{odd.probability:.2g}"
+    yield (
+        f"{odd.test} does not fit the rest: its {words} is {by:.1f} ± {off:.1f} % "
+        f"{'above' if apart * rest > 0.0 else 'below'} theirs (by chance: {chance})."
+    )
+    if odd.special:
+        yield f"It is also {listed(list(odd.special))}."
+    else:
+        yield "Nothing else that is known sets it apart: look at its fuel, its injector and its sensors."
 
 
 def _agree(together: Together) -> bool:

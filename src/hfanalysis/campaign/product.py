@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TypeVar
 
+from hfanalysis.campaign.family import left_the_family, odd_one
 from hfanalysis.campaign.pooling import pooled
 from hfanalysis.campaign.regression import regression_of
 from hfanalysis.campaign.side_by_side import Ended
+from hfanalysis.campaign.special import special
 from hfanalysis.errors import AbsentError
 from hfanalysis.interface.ending import ABSENT, DONE, INPUT_AT_FAULT
 from hfanalysis.products.calibration import Calibration
@@ -102,18 +104,28 @@ def _diagnosed(product: Diagnosis) -> Diagnosed:
 
 def stand_row(rows: Mapping[str, TestRow], root: Path, out: Path | None, progress: Progress) -> StandRow:
     """What the tests of one stand, by name, say together."""
+    law = _regression(rows, root, out, progress)
+    if isinstance(law, CommonLaw) and law.odd is not None:
+        law = law.but(odd=law.odd.but(special=tuple(special(law.odd.test, rows))))
     return StandRow(
         tests=tuple(rows),
         constants={name: _constant(rows, name) for name in HARDWARE},
         effects=_effects(rows),
-        regression=_regression(rows, root, out, progress),
+        regression=law,
     )
 
 
 def _constant(rows: Mapping[str, TestRow], name: str) -> Together:
     if name == "C_i" and len({row.injector_area for row in rows.values()}) > 1:
         return Together(mean=Quantity.absent("the tests have different injectors"))
-    return _together(_calibrated(rows, name), "identified")
+    found = _calibrated(rows, name)
+    together = _together(found, "identified")
+    odd, in_order = odd_one(found), sorted(found, key=lambda test: (rows[test].date or "", test))
+    beyond = left_the_family([found[test].value or 0.0 for test in in_order])
+    return together.but(
+        odd=None if odd is None else odd.but(special=tuple(special(odd.test, rows))),
+        left=tuple(in_order[i] for i in beyond),
+    )
 
 
 def _calibrated(rows: Mapping[str, TestRow], name: str) -> dict[str, Quantity]:

@@ -9,6 +9,7 @@ from hfanalysis.calibrate.fuel_law import evidence_for
 from hfanalysis.calibrate.regression import fit, fit_together
 from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.campaign.family import odd_one, rates
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.adopted.effects import read_adopted
@@ -39,4 +40,12 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
     joint = fit_together(evidence, alone)
     words = "agree" if joint.agree else "disagree: common constants fit worse than chance allows"
     agreement = Agreement(verdict=words, probability=joint.probability)
-    return CommonLaw(tests=tuple(laws), **result(joint.fitted).content, agreement=agreement, alone=laws)
+    flux, by_test = rates(laws)
+    return CommonLaw(
+        tests=tuple(laws),
+        **result(joint.fitted).content,
+        agreement=agreement,
+        odd=odd_one(by_test),
+        flux=flux if by_test else None,
+        alone=laws,
+    )

@@ -47,6 +47,16 @@ class Agreement(Part):
     probability: Annotated[float, Is("of so large a scatter by chance", "")]
 
 
+class Odd(Part):
+    """The test whose number does not fit that of the rest."""
+
+    test: Annotated[str, Is("its name")]
+    apart: Annotated[Quantity, Is("its number less that of the rest", "of the number")]
+    of: Annotated[Quantity, Is("the number of the rest", "of the number")]
+    probability: Annotated[float, Is("that one of them is so far by chance", "")]
+    special: Annotated[tuple[str, ...], Is("what else sets it apart, in words")] = ()
+
+
 class Together(Part):
     """A number as several tests have it together, or the reason why there is none."""
 
@@ -54,6 +64,8 @@ class Together(Part):
     between: Annotated[float | None, Is("how far the tests differ beyond what each states", "of the mean")] = None
     agreement: Annotated[Agreement | None, Is("of the tests")] = None
     tests: Annotated[tuple[str, ...], Is("in it: those that identify the number")] = ()
+    odd: Annotated[Odd | None, Is("the one that does not fit the rest, of four at least")] = None
+    left: Annotated[tuple[str, ...], Is("those beyond the natural limits of all in order, of eight at least")] = ()
 
     @model_validator(mode="before")
     @classmethod
@@ -103,6 +115,8 @@ class CommonLaw(FuelLaw, OfTests):
     """One regression law of several tests."""
 
     agreement: Annotated[Agreement, Is("of the tests")]
+    odd: Annotated[Odd | None, Is("the one whose rate at one flux does not fit the rest's")] = None
+    flux: Annotated[float | None, Is("oxidizer flux at which rates are compared", "kg/m^2/s")] = None
     alone: Annotated[dict[str, FuelLaw], Is("the law of each test")]
 
 
