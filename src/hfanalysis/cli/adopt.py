@@ -10,24 +10,37 @@ from hfanalysis.cli.exit_status import tell
 from hfanalysis.cli.perform import stage
 from hfanalysis.cli.request import Request
 from hfanalysis.effects import FOLDER, library
+from hfanalysis.effects.learnt import STATES
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted import file_for
-from hfanalysis.inference.adopted.effects import of_diagnosis, write_adopted
-from hfanalysis.products.diagnosis import Diagnosis
-from hfanalysis.products.disk import read_json
+from hfanalysis.inference.adopted.draft import draft
+from hfanalysis.inference.adopted.effects import Adopted, of_diagnosis, of_tables, write_adopted
+from hfanalysis.products.diagnosis import Diagnosis, Learnt
+from hfanalysis.products.disk import atomic, read_json
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.version import __version__
+
+LEAST_ELSEWHERE = 0.2
+"""Part of the misfit of another test that a table has to take away there to be said to hold."""
 
 MARK = "Adopted by hfa diagnose"
 """How a file begins that a diagnosis wrote, and another may write over."""
 
 
-def apply(request: Request, stand: bool) -> None:
-    """Diagnose, and adopt what is named, proved on the test that it was. Raises AbsentError where nothing is."""
+def apply(request: Request, stand: bool, unknown: bool = False) -> None:
+    """Diagnose, and adopt what is named, proved on the test that it was, or else what is ``unknown`` as it was found.
+    Raises AbsentError where there is nothing to adopt."""
     context = stage("diagnose", proved_as_before(request))
-    path = adopt(context, context.read(Diagnosis), stand)
+    found = context.read(Diagnosis)
+    path = adopt(context, found, stand, unknown)
     tell(f"{path}: written; every stage of {_whose(context, stand)} now has it in its model")
+    if unknown and found.learnt is not None:
+        tell(_proved_elsewhere(found))
+        if (draft := write_draft(context, found.learnt)) is not None:
+            tell(
+                f"{draft}: a draft of an effect of its form; to make it the team's own, give it a name that ends in .py"
+            )
     tell(f"next: hfa run {context.id} shows m, the misfit and the flight with it; a test of another load would try it")
 
 
@@ -54,30 +67,77 @@ def retract(request: Request, stand: bool) -> None:
     tell(f"{path}: removed; the model of {_whose(context, stand)} is the base model again")
 
 
-def adopt(context: Context, diagnosis: Diagnosis, stand: bool = False) -> Path:
-    """Write the effects that a diagnosis.json names; returns the file.
+def _proved_elsewhere(found: Diagnosis) -> str:
+    """What another test of the stand says of a table, in a sentence."""
+    other = found.gap.other_test
+    if other is None or other.closed_fraction is None:
+        return "no other test of the stand tells whether it holds there: it is what this one test shows"
+    part = f"{100.0 * other.closed_fraction:.0f} % of the misfit of {other.test}"
+    if other.closed_fraction < LEAST_ELSEWHERE:
+        return f"it takes away {part}: it does not hold there, so do not predict with it"
+    return f"it takes away {part}, with this table"
 
-    Raises AbsentError where it names none, InputError for a file that somebody has written by hand.
+
+def write_draft(context: Context, found: Learnt) -> Path | None:
+    """A draft of an effect file beside the team's own, of the form that is hinted at; None where none is."""
+    code = draft(found, f"draft_{context.id}")
+    if code is None:
+        return None
+    path = context.root / FOLDER / f"{context.id}.draft"
+    with atomic(path) as scratch:
+        scratch.write_text(code, encoding="utf-8")
+    return path
+
+
+def adopt(context: Context, diagnosis: Diagnosis, stand: bool = False, unknown: bool = False) -> Path:
+    """Write the effects that a diagnosis.json names, or else what is ``unknown``, over the state that it follows, with
+    what was in the model beside it; returns the file.
+
+    Raises AbsentError where there is nothing to adopt, InputError for a file that somebody has written by hand.
     """
+    if unknown:
+        return _adopt_unknown(context, diagnosis, stand)
     if diagnosis.verdict != "named" or not diagnosis.effects:
         raise AbsentError(
             f"test {context.id}: there is nothing to adopt: the diagnosis names no effect (verdict "
             f"{diagnosis.verdict!r}; what holds 90 %: {', '.join(map(diagnosis.plain, diagnosis.set90))})"
+            + ("; --unknown adopts what has no name as it was found" if diagnosis.learnt is not None else "")
         )
+    found = of_diagnosis(diagnosis.effects, library(context.root / FOLDER))
+    named = ", ".join(f"{e.name} with probability {e.probability:.2f}" for e in diagnosis.effects)
+    return _written(context, found, stand, [f"Verdict {diagnosis.verdict}: {named}."])
+
+
+def _adopt_unknown(context: Context, diagnosis: Diagnosis, stand: bool) -> Path:
+    found = diagnosis.learnt
+    if found is None:
+        why = diagnosis.not_learnt or f"the verdict is {diagnosis.verdict!r}, not 'unknown'"
+        raise AbsentError(f"test {context.id}: there is nothing unknown to adopt: {why}")
+    tables = {**{row.name: row.parameters for row in found.beside}, found.effect: found.parameters}
+    adopted = of_tables(tables, library(context.root / FOLDER))
+    words = [
+        f"Something without a name (probability {diagnosis.posterior['unknown']:.2f}), as it was found, over the "
+        f"{STATES[found.state][2]}; the band is that of the fit.",
+        _proved_elsewhere(diagnosis) + ".",
+    ]
+    if found.hint is not None:
+        words.append(f"A hint, not a name: {found.hint.words}.")
+    return _written(context, adopted, stand, words)
+
+
+def _written(context: Context, found: Adopted, stand: bool, words: list[str]) -> Path:
     path = _path(context, stand)
     if path.is_file() and not path.read_text(encoding="utf-8", errors="replace").startswith(f"# {MARK}"):
         raise InputError(f"{path}: found a file that no diagnosis wrote; expected none: move it away first")
-    found = of_diagnosis(diagnosis.effects, library(context.root / FOLDER))
-    write_adopted(path, found, _header(context, diagnosis, stand))
+    write_adopted(path, found, _header(context, stand, words))
     return path
 
 
-def _header(context: Context, diagnosis: Diagnosis, stand: bool) -> list[str]:
-    named = ", ".join(f"{e.name} with probability {e.probability:.2f}" for e in diagnosis.effects)
+def _header(context: Context, stand: bool, words: list[str]) -> list[str]:
     option = " --stand" if stand else ""
     return [
         f"{MARK} {context.id} --apply{option} (hfanalysis {__version__}).",
-        f"Verdict {diagnosis.verdict}: {named}.",
+        *words,
         f"Every stage of {_whose(context, stand)} has it in its model as long as this file is here. To remove it:",
         f"delete the file, or hfa diagnose {context.id} --retract{option}",
     ]

@@ -99,6 +99,9 @@ def _flight(request: Request, raw_thrust: Raw = False) -> None:
 
 
 Apply = Annotated[bool, typer.Option("--apply", help="Adopt what is named: engines/TEST.effects.toml.")]
+Unknown = Annotated[
+    bool, typer.Option("--unknown", help="With --apply: adopt what has no name, as a table over what it follows.")
+]
 Retract = Annotated[bool, typer.Option("--retract", help="Remove that file again; nothing is diagnosed.")]
 Stand = Annotated[bool, typer.Option("--stand", help="Adopt or retract for all tests of the test's stand.")]
 ProofTest = Annotated[
@@ -108,18 +111,25 @@ ProofTest = Annotated[
 
 
 def _diagnose(
-    request: Request, apply: Apply = False, retract: Retract = False, stand: Stand = False, proof_test: ProofTest = None
+    request: Request,
+    apply: Apply = False,
+    unknown: Unknown = False,
+    retract: Retract = False,
+    stand: Stand = False,
+    proof_test: ProofTest = None,
 ) -> None:
     from hfanalysis.cli import adopt, perform
 
     if proof_test is not None:
         request = request.setting(perform.proof_test(request.root, request.test, proof_test))
+    if unknown and not apply:
+        raise InputError("found --unknown alone; expected it with --apply")
     if not (apply or retract or stand):
         perform.stage("diagnose", request)
     elif apply == retract:
         raise InputError("found --apply and --retract together, or --stand alone; expected one of the two")
     else:
-        (adopt.apply if apply else adopt.retract)(request, stand)
+        adopt.apply(request, stand, unknown) if apply else adopt.retract(request, stand)
 
 
 Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]

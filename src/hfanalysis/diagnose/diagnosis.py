@@ -9,12 +9,13 @@ import numpy as np
 
 from hfanalysis.diagnose.answer.at_limit import at_limit
 from hfanalysis.diagnose.answer.effect_source import acting_in
+from hfanalysis.diagnose.answer.learnt import Learning, learn
 from hfanalysis.diagnose.answer.plausible import judged, sized
 from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.source_places import likeliest_place, places
 from hfanalysis.diagnose.answer.too_small import with_parts, without_small_sources, without_the_small
-from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, upper_limits, verdict_of
+from hfanalysis.diagnose.answer.verdict import Verdict, effects_in, effects_product, upper_limits, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
@@ -81,13 +82,19 @@ def diagnose(
         one = replace(rest, small={**one.small, **rest.small}, notes=(FADE_LEFT_OUT,))
     hypothesis, catalogue, found, verdict, small = one.hypothesis, one.catalogue, one.found, one.verdict, one.small
     progress("proving it", 0.93)
-    proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
+    unknown = learn(found, verdict.chosen) if verdict.label == "unknown" else Learning()
+    proof = Proof({}, None, ())
+    if verdict.label != "none":
+        proof = prove(found, verdict.chosen, other(), unknown.active)
     product = _product(found, verdict, proof, catalogue)
+    if unknown.product is not None:
+        product = product.but(learnt=unknown.product.but(beside=effects_in(verdict, found.bench.observed)))
     product = product.but(
         called=plain_names(effects),
         gap=_with_calibrated(product.gap, found, hypothesis, subject),
         constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
         too_small=small,
+        not_learnt=unknown.reason,
     )
     sentences = story(product)
     if poor_fit(found.named.leftover):

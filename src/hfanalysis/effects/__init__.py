@@ -12,13 +12,14 @@ from pkgutil import iter_modules
 from types import ModuleType
 
 from hfanalysis.effects import trust
+from hfanalysis.effects.learnt import is_learnt, with_learnt
 from hfanalysis.engine.effect import Effect
 from hfanalysis.errors import InputError
 
 FOLDER = "effects"
 """Folder below the root of the tests in which a team keeps effects of its own."""
 
-_NO_EFFECTS = ("trust",)
+_NO_EFFECTS = ("learnt", "trust")
 
 
 def library(folder: Path | None = None) -> dict[str, Effect]:
@@ -50,12 +51,14 @@ def beside(engine_file: Path) -> Path:
 
 
 def library_of(engine_file: Path, names: Iterable[str]) -> dict[str, Effect]:
-    """The effects among which an engine file may name some; a team's own only where ``names`` ask for one.
+    """The effects among which an engine file may name some, also as tables of what no name explains; a team's own only
+    where ``names`` ask for one.
 
     Raises as :func:`library`: code that nobody asks for needs nobody to agree to it.
     """
-    own = any(name not in _built_in() for name in names)
-    return library(beside(engine_file.absolute())) if own else library()
+    names = list(names)
+    own = any(name not in _built_in() and not is_learnt(name) for name in names)
+    return with_learnt(library(beside(engine_file.absolute())) if own else library(), names)
 
 
 def effect(name: str, folder: Path | None = None) -> Effect:

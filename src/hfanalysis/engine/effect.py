@@ -36,7 +36,8 @@ class Parameter:
 
     ``typical`` is the physical scale: the prior's standard deviation about ``center`` (a strength's center is 0),
     ``low`` and ``high`` bound it. A ``given`` parameter is stated by the test and not estimated. ``acting``: from when
-    to when [s after the opening] it makes a difference at all, whatever its value; slopes cost nothing elsewhere.
+    to when [s after the opening] it makes a difference at all, whatever its value; slopes cost nothing elsewhere. An
+    ``inner`` one says what the effect is, and stands in no file.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Parameter:
     high: float = np.inf
     given: bool = False
     acting: tuple[float, float] = (-np.inf, np.inf)
+    inner: bool = False
 
 
 @dataclass(frozen=True)

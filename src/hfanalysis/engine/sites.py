@@ -50,6 +50,20 @@ SITES = (
 (TANK_PRESSURE, TANK_HEAT, TANK_LEAK, NITROGEN_INFLOW, FEED_LOSS, FEED_FACTOR, INJECTOR_FACTOR, REGRESSION_FACTOR,
  FUEL_SOURCE, OXIDIZER_SOURCE, TEMPERATURE_FACTOR, THROAT_FACTOR, THRUST_FACTOR) = range(len(SITES))  # fmt: skip
 
+EQUATION_AND_UNIT = {
+    "tank_pressure": ("tank_energy", "Pa"),
+    "tank_heat": ("tank_energy", "W"),
+    "tank_leak": ("tank_volume", "kg/s"),
+    "nitrogen_inflow": ("tank_volume", "kg/s"),
+    "feed_loss": ("feed", "Pa"),
+    "injector_factor": ("injector", "1"),
+    "regression_factor": ("grain", "1"),
+    "temperature_factor": ("chamber_energy", "1"),
+    "throat_factor": ("nozzle", "1"),
+    "thrust_factor": ("nozzle", "1"),
+}
+"""The governing equation of a site at which something of any shape may be, and the unit of what is there."""
+
 HOOK_OF_SITE = {
     "tank_pressure": AT_TANK,
     "temperature_factor": AT_CHAMBER,

@@ -8,6 +8,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.equations import OUTPUTS
+from hfanalysis.engine.sites import EQUATION_AND_UNIT
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned
 from hfanalysis.inference.observations.observed import Observed
@@ -34,16 +35,20 @@ class SourcePlace:
         return np.asarray(outputs[:, OUTPUTS.index(self.factor_of)])
 
 
-PLACES = (
-    SourcePlace("tank_heat", "tank_energy", "W", 2000.0),
-    SourcePlace("nitrogen_inflow", "tank_volume", "kg/s", 0.02),
-    SourcePlace("tank_leak", "tank_volume", "kg/s", 0.05),
-    SourcePlace("tank_pressure", "tank_energy", "Pa", 1e5),
-    SourcePlace("injector_factor", "injector", "1", 0.1, factor_of="oxidizer_flow"),
-    SourcePlace("feed_loss", "feed", "Pa", 1e5),
-    SourcePlace("regression_factor", "grain", "1", 0.2, factor_of="fuel_flow"),
-    SourcePlace("temperature_factor", "chamber_energy", "1", 0.1, factor_of="nozzle_flow"),
-    SourcePlace("throat_factor", "nozzle", "1", 0.05, factor_of="thrust"),
-    SourcePlace("thrust_factor", "nozzle", "1", 0.05, factor_of="thrust"),
+_TYPICAL: dict[str, tuple[float, str | None]] = {
+    "tank_heat": (2000.0, None),
+    "nitrogen_inflow": (0.02, None),
+    "tank_leak": (0.05, None),
+    "tank_pressure": (1e5, None),
+    "injector_factor": (0.1, "oxidizer_flow"),
+    "feed_loss": (1e5, None),
+    "regression_factor": (0.2, "fuel_flow"),
+    "temperature_factor": (0.1, "nozzle_flow"),
+    "throat_factor": (0.05, "thrust"),
+    "thrust_factor": (0.05, "thrust"),
+}
+PLACES = tuple(
+    SourcePlace(name, *EQUATION_AND_UNIT[name], typical, factor_of=factor_of)
+    for name, (typical, factor_of) in _TYPICAL.items()
 )
 """Sites of the model at which an unknown of any shape is looked for."""

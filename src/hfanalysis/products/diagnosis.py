@@ -77,6 +77,33 @@ class FormError(Part):
     chamber: Annotated[float, Is("of the chamber's pressure and the thrust", "")]
 
 
+class Hint(Part):
+    """A form that a source without a name may have: a factor times powers of states of the engine. It is no name."""
+
+    factor: Annotated[float, Is("of the powers, states in SI", AS_SAID)]
+    powers: Annotated[Sizes, Is("by state", "")]
+    start: Annotated[float, Is("from when on it is seen", "s")]
+    end: Annotated[float, Is("until when it is seen", "s")]
+    words: Annotated[Words, Is("the same in words")]
+
+
+class Learnt(Part):
+    """A source without a name as a table over a state of the engine; ``hfa diagnose --apply --unknown`` adopts it."""
+
+    effect: Annotated[str, Is("what it is called as an effect")]
+    site: Annotated[str, Is("the place in the equation")]
+    equation: Annotated[str, Is("in which it is")]
+    state: Annotated[str, Is("that it follows best, the likeliest beforehand of those alike")]
+    parameters: Annotated[dict[str, Quantity], Is("the table: ends of the state, values, and their deviations")]
+    evidences: Annotated[Sizes, Is("log evidence of its course by state, less the largest", "")]
+    alike: Annotated[tuple[str, ...], Is("states that it follows nearly as well")]
+    closed_fraction: Annotated[float, Is("of the gap, by the table, on the test itself", "")]
+    hint: Annotated[Hint | None, Is("at its form; null where no simple one fits")]
+    beside: Annotated[
+        tuple[NamedEffect, ...], Is("effects that were in the model with it, and are adopted with it")
+    ] = ()
+
+
 class Tried(Part):
     """An explanation that was fitted."""
 
@@ -219,6 +246,8 @@ class Diagnosis(Product):
         "why the name that is likeliest is not the whole story, where the verdict is unknown beside it"
     )] = ()  # fmt: skip
     unknown_beside: Annotated[tuple[str, ...], Is("that name, or those names; none were added to the model")] = ()
+    learnt: Annotated[Learnt | None, Is("what is unknown, over the state that it follows best")] = None
+    not_learnt: Annotated[Words | None, Is("why an unknown cannot be adopted as it was found")] = None
     at_limit: Annotated[Words | None, Is(
         "what would be said on the other side, where a probability is within 0.01 of a limit"
     )] = None  # fmt: skip

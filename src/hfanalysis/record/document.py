@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -54,13 +54,13 @@ def read_toml(path: Path) -> tuple[bytes, dict[str, Any]]:
 def validate(section: type[T], content: Mapping[str, Any], path: Path) -> T:
     """The content of the file at ``path`` as a section; raises :class:`InputError` for the first fault in it."""
     try:
-        return cast(T, _adapter(section).validate_python(content))
+        return cast(T, _adapter(cast(Hashable, section)).validate_python(content))
     except ValidationError as error:
         raise InputError(_message(error, str(path))) from None
 
 
 @lru_cache(maxsize=32)
-def _adapter(section: type) -> TypeAdapter[Any]:
+def _adapter(section: Any) -> TypeAdapter[Any]:
     """What reads a section: made once, for making it takes fifty times as long as reading."""
     return TypeAdapter(section)
 

@@ -135,7 +135,9 @@ def test_apply_and_retract_on_the_command_line(
     assert {p: p.read_bytes() for p in (root / "raw_tests").rglob("*") if p.is_file()} == raw
 
 
-@pytest.mark.parametrize("options", [("--apply", "--retract"), ("--stand",)])
+@pytest.mark.parametrize(
+    "options", [("--apply", "--retract"), ("--stand",), ("--unknown",), ("--retract", "--unknown")]
+)
 def test_options_that_contradict_are_refused(root: Path, hfa: Run, options: tuple[str, ...]) -> None:
     assert hfa("diagnose", "T1", "--root", root, *options) == 2
 

@@ -15,7 +15,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Active, Effect, compose
 from hfanalysis.engine.equations import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.sites import SITES
-from hfanalysis.engine.unsteady import burn, constants
+from hfanalysis.engine.unsteady import Engine, burn, constants
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned, last_regression, misread, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
@@ -85,7 +85,7 @@ def acting(found: Fit, name: str, observed: Observed) -> Acting:
         return _sensor(found, active, observed)
     if active.effect.fading_web is not None and "t_fuel_out" in observed.events:
         return _fading(found, active, observed, time)
-    course = _Course.of(found, observed, time)
+    course = Course.of(found, observed, time)
     mean = course.source(active.effect, found.x)
     slopes = np.column_stack([course.slope(active.effect, k, mean) for k in range(found.x.size)])
     std = np.sqrt(np.maximum(np.einsum("ti,ij,tj->t", slopes, found.covariance, slopes), 0.0))
@@ -150,7 +150,7 @@ def _fading(found: Fit, active: Active, observed: Observed, time: Array) -> Acti
 
 
 @dataclass(frozen=True)
-class _Course:
+class Course:
     """The states of a fit's run at the instants at which its sources are asked for."""
 
     found: Fit
@@ -161,7 +161,7 @@ class _Course:
     liquid_out: float | None
 
     @classmethod
-    def of(cls, found: Fit, observed: Observed, time: Array) -> _Course:
+    def of(cls, found: Fit, observed: Observed, time: Array) -> Course:
         engine = with_spare_fuel(found.hypothesis.at(found.x), observed.fuel_out)
         burnt = burn(engine, observed.longest + 1.0, run_on=True, keep_idle=True)
         where = aligned(observed, burnt, time)
@@ -178,7 +178,7 @@ class _Course:
         """What the effect changes in its equation at each state, with the constants that ``x`` stands for."""
         engine = with_spare_fuel(self.found.hypothesis.at(x), self.fuel_out)
         other = replace(engine, effects=tuple(a for a in engine.effects if a.effect.name != effect.name))
-        with_it, without = (_Evaluation.of(e) for e in (engine, other))
+        with_it, without = (Evaluation.of(e) for e in (engine, other))
         rows = _own_rows(with_it, effect)
         out = np.empty(self.where.size)
         for i, t in enumerate(self.where):
@@ -188,6 +188,15 @@ class _Course:
             out[i] = _source(effect, there, without.at(t, np.delete(self.states[i], rows), liquid, burning))
         return out
 
+    def environments(self, engine: Engine) -> Array:
+        """What terms read (n, ENVIRONMENT) [SI] in an engine at each state."""
+        one = Evaluation.of(with_spare_fuel(engine, self.fuel_out))
+        rows = []
+        for i, t in enumerate(self.where):
+            liquid = self.liquid_out is None or t <= self.liquid_out
+            rows.append(one.at(t, self.states[i], liquid, bool(t <= engine.fuel_end)).environment)
+        return np.array(rows)
+
     def slope(self, effect: Effect, number: int, here: Array) -> Array:
         """Of the source with one of the fit's x, by a difference that stays within bounds."""
         step = np.zeros(self.found.x.size)
@@ -196,7 +205,7 @@ class _Course:
         return np.asarray((self.source(effect, self.found.x + step) - here) / step[number])
 
 
-def _own_rows(evaluation: _Evaluation, effect: Effect) -> list[int]:
+def _own_rows(evaluation: Evaluation, effect: Effect) -> list[int]:
     """Where the effect's own states are among all."""
     at, rows = len(STATES), []
     for a in evaluation.active:
@@ -208,11 +217,12 @@ def _own_rows(evaluation: _Evaluation, effect: Effect) -> list[int]:
 
 
 @dataclass(frozen=True)
-class _State:
-    """OUTPUTS and SITES at one state."""
+class State:
+    """OUTPUTS, SITES and ENVIRONMENT at one state."""
 
     outputs: Array
     sites: Array
+    environment: Array
 
     def output(self, name: str) -> float:
         return float(self.outputs[OUTPUTS.index(name)])
@@ -221,24 +231,24 @@ class _State:
         return float(self.sites[SITES.index(name)])
 
 
-class _Evaluation:
+class Evaluation:
     """The rates of an engine, state by state."""
 
     def __init__(self, equations, active) -> None:  # type: ignore[no-untyped-def]
         self.equations, self.active = equations, active
 
     @classmethod
-    def of(cls, engine) -> _Evaluation:  # type: ignore[no-untyped-def]
+    def of(cls, engine) -> Evaluation:  # type: ignore[no-untyped-def]
         composition = compose(engine.effects, constants(engine), len(STATES), idle=True)
         return cls(engine.equations(composition), composition.active)
 
-    def at(self, t: float, y: Array, liquid: bool, burning: bool) -> _State:
+    def at(self, t: float, y: Array, liquid: bool, burning: bool) -> State:
         out = np.zeros(len(OUTPUTS))
         evaluate_rates(t, np.ascontiguousarray(y), liquid, burning, self.equations, np.zeros(y.size), out)
-        return _State(out, self.equations.site.copy())
+        return State(out, self.equations.site.copy(), self.equations.env.copy())
 
 
-def _source(effect: Effect, with_it: _State, without: _State) -> float:
+def _source(effect: Effect, with_it: State, without: State) -> float:
     """The difference in the unit of the effect's equation."""
     equation, sites = effect.equation, effect.sites
     if sites == ("tank_pressure",):

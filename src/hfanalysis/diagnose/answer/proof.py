@@ -11,7 +11,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hfanalysis.diagnose.answer.learnt import with_learnt
 from hfanalysis.diagnose.naming.naming import Naming
+from hfanalysis.engine.effect import Active
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.gap import closed, frozen, held_out, root_mean_square, total_gap
@@ -37,8 +39,8 @@ class Proof:
     notes: tuple[str, ...]
 
 
-def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
-    """All four arms for a set of named effects."""
+def prove(found: Naming, chosen: Candidate, other: OtherTest | None, unknown: Active | None = None) -> Proof:
+    """All four arms for a set of named effects, on another test with what is ``unknown`` as it was learnt."""
     observed, fitted = found.bench.observed, found.bench.at(chosen.form)
     base, after = found.base.fit, chosen.fit
     before = total_gap(base, observed)
@@ -47,7 +49,7 @@ def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     if fractions["same"] is None:
         notes.append("the gap was within the noise of blocks before: there is no fraction of it to close")
     fractions["held_out"] = held_out(base, after, fitted, observed)
-    elsewhere = _elsewhere(chosen, other) if other is not None else None
+    elsewhere = _elsewhere(chosen, unknown, other) if other is not None else None
     fractions["other_test"] = elsewhere.closed_fraction if elsewhere else None
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
@@ -66,10 +68,11 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
     return max(wrong, key=lambda c: c.log_evidence, default=None)
 
 
-def _elsewhere(chosen: Candidate, other: OtherTest) -> diagnosis.OtherTest | None:
+def _elsewhere(chosen: Candidate, unknown: Active | None, other: OtherTest) -> diagnosis.OtherTest | None:
     """The other test without and with the effects, their constants frozen and its own free."""
     observed, bench = other.observed, Bench(other.observed)
-    without, explained = (bench.compared(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
+    made = frozen(other.hypothesis, chosen.fit) if unknown is None else with_learnt(other.hypothesis, chosen, unknown)
+    without, explained = (bench.compared(h) for h in (other.hypothesis, made))
     if without is None or explained is None:
         return None
     base, after = without.fit, explained.fit

@@ -227,12 +227,15 @@ def _chosen(found: Naming, top: str) -> Candidate:
 def effects_product(verdict: Verdict, observed: Observed) -> tuple[NamedEffect, ...]:
     """What was added to the model: name, probability [-], equation, parameters in their SI units, and how large that
     is."""
-    if verdict.label not in ("named", "ambiguous"):
-        return ()
+    return effects_in(verdict, observed) if verdict.label in ("named", "ambiguous") else ()
+
+
+def effects_in(verdict: Verdict, observed: Observed) -> tuple[NamedEffect, ...]:
+    """The effects of the library in the answer, also where it is unknown beside them; as :func:`effects_product`."""
     found = verdict.chosen.fit
     values, stds = found.values, found.stds
     out = []
-    for name in verdict.chosen.names:
+    for name in verdict.added:
         active = acting_in(found)[name]
         parameters = {
             p.name: _within(p, values[full], stds[full])
@@ -242,7 +245,7 @@ def effects_product(verdict: Verdict, observed: Observed) -> tuple[NamedEffect, 
         out.append(
             NamedEffect(
                 name=name,
-                probability=verdict.partners.get(name, verdict.posterior[verdict.top]),
+                probability=verdict.partners.get(name, verdict.posterior.get(name, verdict.posterior[verdict.top])),
                 equation=active.effect.equation,
                 meaning=active.effect.meaning,
                 parameters=parameters,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from hfanalysis.diagnose.answer.posterior import SET, poor_fit
 from hfanalysis.diagnose.answer.verdict import LIKELIER
+from hfanalysis.effects.learnt import STATES
 from hfanalysis.inference.unknowns import kind_of
 from hfanalysis.products.diagnosis import Compared, Diagnosis, Gap, NamedEffect, Place
 from hfanalysis.record.channels import LONG_NAMES, unit_of
@@ -106,10 +107,29 @@ def story(product: Diagnosis) -> list[str]:
     else:
         out += [line for channel in product.gap.before if (line := gap_line(channel, product.gap))]
         out += proof_sentences(product)
+    out += learnt_sentences(product)
     if product.verdict == "unknown" and product.not_it:
         out += [f"It is not {name}." for name in not_it(product)]
     out += [f"What would decide: {text}." for text in product.decisive_measurements]
     return out
+
+
+def learnt_sentences(product: Diagnosis) -> list[str]:
+    """What of an unknown can be adopted as it was found, or why it cannot."""
+    found = product.learnt
+    if product.not_learnt:
+        return [f"It cannot be adopted as it was found: {product.not_learnt}."]
+    if found is None:
+        return []
+    alike = f", and nearly as well {listed([STATES[name][2] for name in found.alike])}" if found.alike else ""
+    out = [f"Of the engine's states it follows best the {STATES[found.state][2]}{alike}."]
+    if found.hint is not None:
+        out.append(text("A hint at its form, not a name: {words}.", words=found.hint.words))
+    part = f"{100.0 * found.closed_fraction:.0f} %"
+    return [
+        *out,
+        f"As a table over that state it takes away {part} of the misfit; to adopt it: hfa diagnose --apply --unknown.",
+    ]
 
 
 def not_it(product: Diagnosis) -> list[str]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hfanalysis.effects import FOLDER, library
+from hfanalysis.effects.learnt import with_learnt
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted import adopted_file
@@ -63,6 +64,7 @@ class Adopted:
         return {
             p.name: Quantity(value, p.unit, stated[p.name].std if p.name in stated else None)
             for p, value in zip(active.effect.parameters, active.values, strict=True)
+            if not p.inner
         }
 
 
@@ -94,6 +96,7 @@ def read_effects(path: Path, known: Mapping[str, Effect]) -> Adopted:
 def effects_in(content: Mapping[str, Any], path: Path, known: Mapping[str, Effect]) -> Adopted:
     """The effects that tables of the file at ``path`` state, by name. Raises InputError as :func:`read_adopted`. Values
     come out in SI."""
+    known = with_learnt(known, content)
     stated = {name: _values(path, name, table, known) for name, table in sorted(content.items())}
     return _adopted(stated, known, path.name)
 
@@ -106,7 +109,7 @@ def tables(adopted: Adopted) -> dict[str, dict[str, str]]:
 def _table(active: Active, adopted: Adopted) -> dict[str, str]:
     stated = (adopted.stated or {}).get(active.effect.name, {})
     values = {name: stated.get(name, Value(value)) for name, value in active.named.items()}
-    return {p.name: _text(values[p.name], p.unit) for p in active.effect.parameters}
+    return {p.name: _text(values[p.name], p.unit) for p in active.effect.parameters if not p.inner}
 
 
 def _values(path: Path, name: str, table: Any, known: Mapping[str, Effect]) -> dict[str, Value]:
@@ -115,7 +118,7 @@ def _values(path: Path, name: str, table: Any, known: Mapping[str, Effect]) -> d
         raise InputError(f"{path}: found {name!r}; expected an effect{near(name, known)} (hfa effects lists them)")
     if not isinstance(table, dict):
         raise InputError(f"{place(str(path), name)}: found {table!r}; expected a table of parameters, [{name}]")
-    parameters = {p.name: p for p in known[name].parameters}
+    parameters = {p.name: p for p in known[name].parameters if not p.inner}
     for key in table:
         if key not in parameters:
             expected = f"one of {', '.join(parameters)}{near(key, parameters)}"
@@ -158,13 +161,17 @@ def _dimension(parameter: Parameter) -> str | None:
 
 
 def of_diagnosis(effects: Sequence[NamedEffect], known: Mapping[str, Effect]) -> Adopted:
-    """The effects that a diagnosis.json names. Raises InputError for what a file of them could not hold. Values in and
-    out are in the units of the effects (SI)."""
-    stated = {}
-    for found in sorted(effects, key=lambda e: e.name):
-        name = found.name
+    """The effects that a diagnosis.json names, as :func:`of_tables`."""
+    return of_tables({found.name: found.parameters for found in effects}, known)
+
+
+def of_tables(effects: Mapping[str, Mapping[str, Quantity]], known: Mapping[str, Effect]) -> Adopted:
+    """Effects by name, with their parameters as a diagnosis.json has them. Raises InputError for what a file of them
+    could not hold. Values in and out are in the units of the effects (SI)."""
+    stated, known = {}, with_learnt(known, effects)
+    for name, parameters in sorted(effects.items()):
         units = {p.name: p.unit for p in known[name].parameters} if name in known else {}
-        values = {key: Value(q.value, q.std) for key, q in found.parameters.items() if q.value is not None}
+        values = {key: Value(q.value, q.std) for key, q in parameters.items() if q.value is not None}
         table = {key: _text(value, units.get(key, "")) for key, value in values.items()}
         stated[name] = _values(Path("diagnosis.json"), name, table, known)
     return _adopted(stated, known)

@@ -85,11 +85,17 @@ class SmoothSource(LinearUnknown):
     def history(self, fitted: Fit, observed: Observed) -> History:
         """The source over time [s after the opening], in the unit of its place."""
         time = np.linspace(0.0, observed.last, POINTS)
+        mean, slopes, covariance = self.course(fitted, time)
+        std = spread_of(slopes, covariance)
+        place, whole = seen_at(self.place, mean, std), self.place.whole(fitted, time, observed)
+        return History(place, time, mean, std, 0.5 * self.splines.spacing, whole=whole)
+
+    def course(self, fitted: Fit, time: Array) -> tuple[Array, Array, Array]:
+        """Its mean (n,) at ``time`` (n,) [s] as a fit has it, in the unit of the place, its slopes (n, m) with its own
+        numbers, and their covariance (m, m)."""
         block, own = next(it for it in fitted.hypothesis.places() if it[0].names == self._names)
         basis = block.splines.at(time) @ block.matrix
-        mean, std = basis @ fitted.x[own], spread_of(basis, fitted.covariance[own, own])
-        place, whole = seen_at(self.place, mean, std), self.place.whole(fitted, time, observed)
-        return History(place, time, mean, std, 0.5 * block.splines.spacing, whole=whole)
+        return basis @ fitted.x[own], basis, fitted.covariance[own, own]
 
     @property
     def _names(self) -> tuple[str, ...]:
