@@ -6,9 +6,12 @@ from collections.abc import Iterator, Mapping
 from math import hypot
 
 from hfanalysis.campaign.pooling import DISAGREE
-from hfanalysis.products.campaign import CommonLaw, EffectRow, Odd, StandRow, TestRow, Together
+from hfanalysis.campaign.sensors import drifting
+from hfanalysis.products.campaign import CommonLaw, EffectRow, Odd, SensorRow, StandRow, TestRow, Together
 from hfanalysis.quantity import NORMAL_95, Quantity
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report.names import called
+from hfanalysis.sentences import said
 from hfanalysis.wording.numbers import in_words, listed, shown
 
 TWICE = 1.5
@@ -29,6 +32,7 @@ def conclusions(stand: StandRow, tests: Mapping[str, TestRow]) -> list[str]:
         *_odd_ones(stand),
         *_with_holes(rows),
         *_effects(stand.effects, stand.tests),
+        *_sensors(stand.sensors),
     ]
 
 
@@ -136,6 +140,27 @@ def _larger(name: str, parameter: str, found: Mapping[str, Quantity]) -> Iterato
     if least > 0.0 and most > TWICE * least:
         times = f"{most / least:.1f} times that in {low}"
         yield f"{_capital(name)}: its {parameter.replace('_', ' ')} in {high} is {times}; look at what changed."
+
+
+def _sensors(sensors: Mapping[str, SensorRow]) -> Iterator[str]:
+    """Which sensor's zero drifts, and in which tests it was off."""
+    for name in drifting(sensors):
+        row = sensors[name]
+        (first, low), *_, (last, high) = row.zeros.items()
+        ends = f"from {_zero(low)} in {first} to {_zero(high)} in {last}"
+        yield f"The zero of {_sensor(name, row)} drifts, {ends}: have it checked."
+    for name, row in sensors.items():
+        for test in row.left:
+            yield f"The zero of {_sensor(name, row)} was off in {test}: {_zero(row.zeros[test])}."
+
+
+def _sensor(name: str, row: SensorRow) -> str:
+    words = LONG_NAMES.get(row.channel, row.channel.replace("_", " "))
+    return words if name == row.channel else f"{name} ({words})"
+
+
+def _zero(found: Quantity) -> str:
+    return str(said(found.value or 0.0, "bar" if found.unit == "Pa" else found.unit, ".3g"))
 
 
 def _capital(words: str) -> str:

@@ -103,6 +103,16 @@ def _stand(stand: StandRow, tests: Mapping[str, TestRow]) -> Iterator[Markup]:
     else:
         yield html.paragraph("No effect is named in any of the tests.")
     yield html.paragraph(regression_sentence(stand.regression))
+    if stand.sensors:
+        yield _sensors(stand)
+
+
+def _sensors(stand: StandRow) -> Markup:
+    """A row for each sensor: its zero by test, in the order of dates."""
+    tests = list(dict.fromkeys(test for row in stand.sensors.values() for test in row.zeros))
+    rows = [(name, *(_cell(row.channel, row.zeros.get(test)) for test in tests)) for name, row in stand.sensors.items()]
+    caption = "What was taken off as a sensor's zero, in the order of dates; another serial number is another sensor."
+    return html.table("Zeros of the sensors", caption, ("sensor", *(f">{test}" for test in tests)), rows)
 
 
 def _constant(name: str, rows: Mapping[str, Mapping[str, Quantity]], together: Together) -> tuple[Any, ...]:

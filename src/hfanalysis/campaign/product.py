@@ -9,6 +9,7 @@ from typing import TypeVar
 from hfanalysis.campaign.family import left_the_family, odd_one
 from hfanalysis.campaign.pooling import pooled
 from hfanalysis.campaign.regression import regression_of
+from hfanalysis.campaign.sensors import sensors_of, zeros_of
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.special import special
 from hfanalysis.errors import AbsentError
@@ -28,6 +29,7 @@ from hfanalysis.products.campaign import (
 from hfanalysis.products.diagnosis import Diagnosis, NamedEffect
 from hfanalysis.products.disk import read_json
 from hfanalysis.products.flight import Flight
+from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.model import Product
 from hfanalysis.products.validation import Validation
 from hfanalysis.progress import Progress
@@ -53,7 +55,7 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> Tes
     counts = definition is not None and ended.status in (DONE, ABSENT)
     about = definition.test if definition is not None and counts else None
     where = folder if counts else None
-    calibration, validation = _read(Calibration, where), _read(Validation, where)
+    calibration, validation, ingest = _read(Calibration, where), _read(Validation, where), _read(Ingest, where)
     flight, diagnosis = _read(Flight, where), _read(Diagnosis, where)
     constants = calibration.quantities if calibration else {}
     measured = validation.performance.measured.quantities if validation else {}
@@ -70,6 +72,7 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> Tes
         apogee=flight.apogee if flight else None,
         diagnosis=_diagnosed(diagnosis) if diagnosis else None,
         page=f"{folder.name}/report.html" if counts and (folder / "report.html").exists() else None,
+        zeros=zeros_of(definition, ingest) if definition is not None and ingest is not None else {},
     )
 
 
@@ -112,6 +115,7 @@ def stand_row(rows: Mapping[str, TestRow], root: Path, out: Path | None, progres
         constants={name: _constant(rows, name) for name in HARDWARE},
         effects=_effects(rows),
         regression=law,
+        sensors=sensors_of(rows),
     )
 
 

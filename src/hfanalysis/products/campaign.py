@@ -23,6 +23,22 @@ class Diagnosed(Part):
     partners: Annotated[Sizes, Is("probability of each further effect if the first is there", "")]
 
 
+class Zero(Part):
+    """The zero of a channel in a test."""
+
+    sensor: Annotated[str | None, Is("its serial number, as stated")]
+    value: Annotated[Quantity, Is("what was taken off as its zero", "of the channel")]
+
+
+class SensorRow(Part):
+    """A sensor in the tests of a stand, in the order of their dates."""
+
+    channel: Annotated[str, Is("that it is of, in the last of them")]
+    zeros: Annotated[dict[str, Quantity], Is("what was taken off as its zero, by test", "of the channel")]
+    drifts: Annotated[float | None, Is("probability of so steady a change of the zero by chance, of five at least", "")]
+    left: Annotated[tuple[str, ...], Is("tests beyond the natural limits of all in order, of eight at least")]
+
+
 class TestRow(Part):
     """A test in short."""
 
@@ -38,6 +54,7 @@ class TestRow(Part):
     apogee: Annotated[Quantity | None, Is("predicted, above ground", "m")]
     diagnosis: Annotated[Diagnosed | None, Is("in short")]
     page: Annotated[str | None, Is("where its page is")]
+    zeros: Annotated[Mapping[str, Zero], Is("by channel, where one was taken")] = {}
 
 
 class Agreement(Part):
@@ -133,6 +150,7 @@ class StandRow(Part):
     constants: Annotated[dict[str, Together], Is("C_i, K_loss and m together")]
     effects: Annotated[dict[str, EffectRow], Is("that some test names")]
     regression: Annotated[CommonLaw | NoLaw, Is("the law of all its tests, or the reason why there is none")]
+    sensors: Annotated[Mapping[str, SensorRow], Is("by serial number, or by channel where none is stated")] = {}
 
 
 class Predicted(Part):

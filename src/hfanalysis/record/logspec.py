@@ -164,7 +164,7 @@ class ChannelSpec(Section):
     day on which it was calibrated in place, with known loads on the stand itself. ``missing``: readings that stand for
     none (999 of an open thermocouple), as logged. ``gauge``: the ambient pressure is still to be added, as stated or as
     the unit says. ``trust``: why the channel is to be believed, whatever its health seems. ``tap``: where the chamber's
-    gauge sits, at its head or aft of the grain.
+    gauge sits, at its head or aft of the grain. ``sensor``: its serial number, by which a campaign follows its zero.
     """
 
     column: Column
@@ -181,6 +181,7 @@ class ChannelSpec(Section):
     missing: ListOf[Number] = ()
     trust: Text | None = None
     tap: Literal["head", "aft"] | None = None
+    sensor: Text | None = None
     name: str = field(default="", metadata=DERIVED)
 
     @cached_property
