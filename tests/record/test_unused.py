@@ -28,10 +28,10 @@ from hfanalysis.stages.runner import run_to
 from hfanalysis.units import Value
 
 ROOT = Path(__file__).parents[2]
-LABELS = {"schema", "engine.description", "engine.stand", "feed.p_loss"} | {
+LABELS = {"schema", "engine.description", "engine.stand", "feed.p_loss", "channels.sensor"} | {
     f"test.{key}" for key in ("date", "description", "engine")
 }
-"""What only people read, or the reader of the file itself; and what it refuses."""
+"""What only people read, or a campaign, or the reader of the file itself; and what it refuses."""
 
 GEOMETRY = """
 [rocket.geometry]

@@ -77,7 +77,7 @@ class FormError(Part):
     chamber: Annotated[float, Is("of the chamber's pressure and the thrust", "")]
 
 
-class Hint(Part):
+class PowerLaw(Part):
     """A form that a source without a name may have: a factor times powers of states of the engine. It is no name."""
 
     factor: Annotated[float, Is("of the powers, states in SI", AS_SAID)]
@@ -98,7 +98,7 @@ class Learnt(Part):
     evidences: Annotated[Sizes, Is("log evidence of its course by state, less the largest", "")]
     alike: Annotated[tuple[str, ...], Is("states that it follows nearly as well")]
     closed_fraction: Annotated[float, Is("of the gap, by the table, on the test itself", "")]
-    hint: Annotated[Hint | None, Is("at its form; null where no simple one fits")]
+    hint: Annotated[PowerLaw | None, Is("at its form; null where no simple one fits")]
     beside: Annotated[
         tuple[NamedEffect, ...], Is("effects that were in the model with it, and are adopted with it")
     ] = ()

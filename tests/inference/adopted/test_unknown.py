@@ -18,14 +18,16 @@ from hfanalysis.diagnose.answer.words import learnt_sentences
 from hfanalysis.effects import FOLDER, library, trust
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import effects_in, read_adopted, tables
-from hfanalysis.products.diagnosis import Diagnosis, Hint, Learnt
+from hfanalysis.products.diagnosis import Diagnosis, PowerLaw, Learnt
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 
 NAME = "unknown_regression_factor_by_oxidizer_flux"
 VALUES = [0.0, 0.1, 0.2, 0.1, 0.0, -0.1, 0.0, 0.1]
 ACTIVE = table(NAME, 50.0, 600.0, VALUES, 0.02)
-HINT = Hint(factor=-2e-3, powers={"p_chamber": 0.8, "oxidizer_flux": -0.2}, start=2.6, end=5.0, words="it goes with x")
+HINT = PowerLaw(
+    factor=-2e-3, powers={"p_chamber": 0.8, "oxidizer_flux": -0.2}, start=2.6, end=5.0, words="it goes with x"
+)
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.gap import closed, frozen, total_gap
 from hfanalysis.inference.unknown import has_name
 from hfanalysis.inference.unknowns.smooth_source import SmoothSource, smooth_prior
-from hfanalysis.products.diagnosis import Hint, Learnt
+from hfanalysis.products.diagnosis import PowerLaw, Learnt
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
 
@@ -180,7 +180,7 @@ def _closes(found: Naming, chosen: Candidate, active: Active) -> float | None:
     return None if fitted is None else closed(*(total_gap(f, observed) for f in (base, fitted)))
 
 
-def hint(courses: Mapping[str, Array], mean: Array, std: Array, time: Array) -> Hint | None:
+def hint(courses: Mapping[str, Array], mean: Array, std: Array, time: Array) -> PowerLaw | None:
     """The product of powers of a few states that a source goes with, and when; None where it goes with none.
 
     Forward selection among the logarithms of the states, a power more where it is worth its price (BIC). ``courses``:
@@ -214,7 +214,9 @@ def hint(courses: Mapping[str, Array], mean: Array, std: Array, time: Array) -> 
         return None
     start, end = float(time[seen][0]), float(time[seen][-1])
     powers = {name: float(k) for name, k in zip(chosen, power[1:], strict=True)}
-    return Hint(factor=float(sign * np.exp(power[0])), powers=powers, start=start, end=end, words=_words(powers, start))
+    return PowerLaw(
+        factor=float(sign * np.exp(power[0])), powers=powers, start=start, end=end, words=_words(powers, start)
+    )
 
 
 def _powers(logs: list[Array], log_source: Array, weight: Array) -> tuple[Array, float]:
