@@ -113,6 +113,12 @@ def _adopt_unknown(context: Context, diagnosis: Diagnosis, stand: bool) -> Path:
     if found is None:
         why = diagnosis.not_learnt or f"the verdict is {diagnosis.verdict!r}, not 'unknown'"
         raise AbsentError(f"test {context.id}: there is nothing unknown to adopt: {why}")
+    other = diagnosis.gap.other_test
+    if stand and other is not None and (other.closed_fraction or 0.0) < LEAST_ELSEWHERE:
+        raise AbsentError(
+            f"test {context.id}: it is not adopted for all tests of the stand: {_proved_elsewhere(diagnosis)}; without "
+            "--stand it is adopted for this test alone"
+        )
     tables = {**{row.name: row.parameters for row in found.beside}, found.effect: found.parameters}
     adopted = of_tables(tables, library(context.root / FOLDER))
     words = [

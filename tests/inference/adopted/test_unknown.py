@@ -18,7 +18,7 @@ from hfanalysis.diagnose.answer.words import learnt_sentences
 from hfanalysis.effects import FOLDER, library, trust
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import effects_in, read_adopted, tables
-from hfanalysis.products.diagnosis import Diagnosis, PowerLaw, Learnt
+from hfanalysis.products.diagnosis import Diagnosis, Learnt, OtherTest, PowerLaw
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 
@@ -97,6 +97,20 @@ def test_where_there_is_nothing_to_adopt_the_reason_is_said(root: Path) -> None:
         adopt(opened(root), unknown(learnt=None, verdict="none"), unknown=True)
     with pytest.raises(AbsentError, match="--unknown adopts what has no name as it was found"):
         adopt(opened(root), unknown())
+
+
+def test_what_does_not_hold_on_another_test_is_not_adopted_for_all(root: Path) -> None:
+    product = unknown()
+    gap = {"test": "T2", "closed_fraction": -0.27, "before": {}, "after": {}}
+    other = product.but(gap=product.gap.but(other_test=OtherTest(**gap)))
+    with pytest.raises(
+        AbsentError, match=r"takes away -27 % of the misfit of T2: it does not hold there.*this test alone"
+    ):
+        adopt(opened(root), other, stand=True, unknown=True)
+    text = adopt(opened(root), other, unknown=True).read_text(encoding="utf-8")
+    assert "it does not hold there, so do not predict with it" in text
+    holds = product.but(gap=product.gap.but(other_test=OtherTest(**{**gap, "closed_fraction": 0.6})))
+    assert adopt(opened(root), holds, stand=True, unknown=True).name == "paper.effects.toml"
 
 
 def test_the_draft_is_an_effect_that_a_team_can_make_its_own(root: Path) -> None:

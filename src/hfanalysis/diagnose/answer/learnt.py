@@ -22,7 +22,7 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.gap import closed, frozen, total_gap
 from hfanalysis.inference.unknown import has_name
 from hfanalysis.inference.unknowns.smooth_source import SmoothSource, smooth_prior
-from hfanalysis.products.diagnosis import PowerLaw, Learnt
+from hfanalysis.products.diagnosis import Learnt, PowerLaw
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
 
@@ -89,37 +89,43 @@ def learn(found: Naming, chosen: Candidate) -> Learning:
         return Learning(reason=f"it is in what {source.place.sensor} reads: hfa health tells of sensors")
     observed, fitted = found.bench.observed, chosen.fit
     time = np.linspace(0.0, observed.last, 2 * source.splines.count)
-    wet = bool(np.isfinite(source.splines.liquid_out))
     time = time[time < source.splines.liquid_out]
     mean, slopes, covariance = source.course(fitted, time)
+    spread = slopes @ covariance @ slopes.T
     environments = _environments(Course.of(fitted, observed, time))
     courses = {
         state: np.array([state_at(state, t, e) for t, e in zip(time, environments, strict=True)])
         for state in states_of(source.place.name)
     }
-    spread = slopes @ covariance @ slopes.T
     tables = [over for state, own in courses.items() if (over := over_state(state, own, mean, spread)) is not None]
-    best, most = _first(tables), max(over.log_evidence for over in tables)
-    active = learnt(name_of(source.place.name, best.state, wet)).at(strength=1.0, **_numbers(best))
     free = closed(*(total_gap(f, observed) for f in (found.base.fit, fitted)))
-    own = _closes(found, chosen, active)
-    std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slopes, covariance, slopes), 0.0))
-    called = STATES[best.state][2]
-    if own is None or free is None or own < HALF * free:
-        part = "none" if own is None or free is None else f"{max(own, 0.0):.0%} where over time it closes {free:.0%}"
-        return Learning(reason=f"it follows no state of the engine: over the {called}, the best, it closes {part}")
-    product = Learnt(
-        effect=active.effect.name,
-        site=source.place.name,
-        equation=active.effect.equation,
-        state=best.state,
-        parameters=quantities(active),
-        evidences={over.state: over.log_evidence - most for over in tables},
-        alike=tuple(o.state for o in tables if o is not best and o.log_evidence > most - ALIKE),
-        closed_fraction=own,
-        hint=hint(courses, mean, std, time),
-    )
-    return Learning(active, product)
+    if not tables or free is None:
+        return Learning(reason="no channel is off by more than its noise: there is nothing that a table could close")
+    most, wet = max(over.log_evidence for over in tables), bool(np.isfinite(source.splines.liquid_out))
+    alike = [over for over in tables if over.log_evidence > most - ALIKE]
+    shares = {}
+    for (
+        over
+    ) in alike:  # the likeliest beforehand first; time is the last, for at another load things come at other times
+        active = learnt(name_of(source.place.name, over.state, wet)).at(strength=1.0, **_numbers(over))
+        shares[over.state] = share = _closes(found, chosen, active)
+        if share < HALF * free:
+            continue
+        product = Learnt(
+            effect=active.effect.name,
+            site=source.place.name,
+            equation=active.effect.equation,
+            state=over.state,
+            parameters=quantities(active),
+            evidences={one.state: one.log_evidence - most for one in tables},
+            alike=tuple(one.state for one in alike if one is not over and one.state not in shares),
+            closed_fraction=share,
+            hint=hint(courses, mean, np.sqrt(np.maximum(spread.diagonal(), 0.0)), time),
+        )
+        return Learning(active, product)
+    best = max(shares, key=lambda state: shares[state])
+    closes = f"{max(shares[best], 0.0):.0%} where over time it closes {free:.0%}"
+    return Learning(reason=f"it follows no state of the engine: over {STATES[best][2]}, the best, it closes {closes}")
 
 
 def _environments(course: Course) -> Array:
@@ -147,13 +153,6 @@ def over_state(state: str, values: Array, mean: Array, covariance: Array) -> Ove
     return Over(state, low, high, gain @ mean, np.sqrt(np.maximum(spread.diagonal(), 0.0)), evidence)
 
 
-def _first(tables: list[Over]) -> Over:
-    """The state that a course follows best: of those that are not told apart the likeliest beforehand, which time never
-    is, for at another load things come at other times."""
-    best = max(over.log_evidence for over in tables)
-    return next(over for over in tables if over.log_evidence > best - ALIKE)
-
-
 def _numbers(over: Over) -> dict[str, float]:
     values = {f"value_{k}": float(v) for k, v in enumerate(over.values)}
     return {"low": over.low, "high": over.high, **values, **{f"band_{k}": float(b) for k, b in enumerate(over.bands)}}
@@ -171,13 +170,14 @@ def with_learnt(hypothesis: Hypothesis, chosen: Candidate, active: Active) -> Hy
     return replace(named, engine=replace(named.engine, effects=(*named.engine.effects, active)))
 
 
-def _closes(found: Naming, chosen: Candidate, active: Active) -> float | None:
-    """The part of the gap [-] that the table closes on the test itself, the base model's constants refitted."""
+def _closes(found: Naming, chosen: Candidate, active: Active) -> float:
+    """The part of the gap [-] that the table closes on the test itself, the base model's constants refitted; 0 where no
+    engine runs with it."""
     base, observed = found.base.fit, found.bench.observed
     made = with_learnt(base.hypothesis, chosen, active)
     start = chosen.fit.x[: base.x.size] if chosen.fit.x.size >= base.x.size else base.x
     fitted = attempted(made, found.bench.at(chosen.form), start, SHORT)
-    return None if fitted is None else closed(*(total_gap(f, observed) for f in (base, fitted)))
+    return 0.0 if fitted is None else closed(*(total_gap(f, observed) for f in (base, fitted))) or 0.0
 
 
 def hint(courses: Mapping[str, Array], mean: Array, std: Array, time: Array) -> PowerLaw | None:
