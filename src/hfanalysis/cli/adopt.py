@@ -17,6 +17,7 @@ from hfanalysis.inference.adopted.draft import draft
 from hfanalysis.inference.adopted.effects import Adopted, of_diagnosis, of_tables, write_adopted
 from hfanalysis.products.diagnosis import Diagnosis, Learnt
 from hfanalysis.products.disk import atomic, read_json
+from hfanalysis.sentences import capitalised
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.version import __version__
@@ -124,25 +125,25 @@ def _adopt_unknown(context: Context, diagnosis: Diagnosis, stand: bool) -> Path:
     words = [
         f"Something without a name (probability {diagnosis.posterior['unknown']:.2f}), as it was found, over the "
         f"{STATES[found.state][2]}; the band is that of the fit.",
-        _proved_elsewhere(diagnosis) + ".",
+        capitalised(_proved_elsewhere(diagnosis)) + ".",
     ]
     if found.hint is not None:
         words.append(f"A hint, not a name: {found.hint.words}.")
-    return _written(context, adopted, stand, words)
+    return _written(context, adopted, stand, words, " --unknown")
 
 
-def _written(context: Context, found: Adopted, stand: bool, words: list[str]) -> Path:
+def _written(context: Context, found: Adopted, stand: bool, words: list[str], how: str = "") -> Path:
     path = _path(context, stand)
     if path.is_file() and not path.read_text(encoding="utf-8", errors="replace").startswith(f"# {MARK}"):
         raise InputError(f"{path}: found a file that no diagnosis wrote; expected none: move it away first")
-    write_adopted(path, found, _header(context, stand, words))
+    write_adopted(path, found, _header(context, stand, words, how))
     return path
 
 
-def _header(context: Context, stand: bool, words: list[str]) -> list[str]:
+def _header(context: Context, stand: bool, words: list[str], how: str) -> list[str]:
     option = " --stand" if stand else ""
     return [
-        f"{MARK} {context.id} --apply{option} (hfanalysis {__version__}).",
+        f"{MARK} {context.id} --apply{how}{option} (hfanalysis {__version__}).",
         *words,
         f"Every stage of {_whose(context, stand)} has it in its model as long as this file is here. To remove it:",
         f"delete the file, or hfa diagnose {context.id} --retract{option}",

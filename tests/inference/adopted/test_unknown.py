@@ -54,7 +54,8 @@ def test_what_is_unknown_is_adopted_and_acts_as_it_was_found(root: Path) -> None
     path = adopt(opened(root), unknown(), unknown=True)
     text = path.read_text(encoding="utf-8")
     assert "Something without a name (probability 0.97), as it was found, over the oxidizer flux" in text
-    assert "no other test of the stand tells whether it holds there" in text
+    assert "No other test of the stand tells whether it holds there" in text
+    assert "Adopted by hfa diagnose T1 --apply --unknown (hfanalysis" in text
     assert "inner" not in text
     (active,) = read_adopted(root, opened(root).definition).effects
     assert active == ACTIVE
@@ -108,7 +109,7 @@ def test_what_does_not_hold_on_another_test_is_not_adopted_for_all(root: Path) -
     ):
         adopt(opened(root), other, stand=True, unknown=True)
     text = adopt(opened(root), other, unknown=True).read_text(encoding="utf-8")
-    assert "it does not hold there, so do not predict with it" in text
+    assert "It takes away -27 % of the misfit of T2: it does not hold there, so do not predict with it." in text
     holds = product.but(gap=product.gap.but(other_test=OtherTest(**{**gap, "closed_fraction": 0.6})))
     assert adopt(opened(root), holds, stand=True, unknown=True).name == "paper.effects.toml"
 
@@ -136,7 +137,7 @@ def test_the_words_tell_the_state_the_hint_and_the_command() -> None:
     told = learnt_sentences(unknown())
     assert told[0] == "Of the engine's states it follows best the oxidizer flux, and nearly as well chamber pressure."
     assert told[1] == "A hint at its form, not a name: it goes with x."
-    assert "takes away 83 % of the misfit; to adopt it: hfa diagnose --apply --unknown." in told[2]
+    assert "takes away 83 % of the misfit; to adopt it: hfa diagnose TEST --apply --unknown." in told[2]
     assert learnt_sentences(unknown(learnt=None, not_learnt="it is an event")) == [
         "It cannot be adopted as it was found: it is an event."
     ]
