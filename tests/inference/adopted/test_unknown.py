@@ -137,7 +137,8 @@ def test_the_words_tell_the_state_the_hint_and_the_command() -> None:
     told = learnt_sentences(unknown())
     assert told[0] == "Of the engine's states it follows best the oxidizer flux, and nearly as well chamber pressure."
     assert told[1] == "A hint at its form, not a name: it goes with x."
-    assert "takes away 83 % of the misfit; to adopt it: hfa diagnose TEST --apply --unknown." in told[2]
+    assert told[2] == "As a table over that state it takes away 83 % of the misfit."
+    assert told[3] == "To adopt it: hfa diagnose TEST --apply --unknown."
     assert learnt_sentences(unknown(learnt=None, not_learnt="it is an event")) == [
         "It cannot be adopted as it was found: it is an event."
     ]

@@ -128,7 +128,8 @@ def learnt_sentences(product: Diagnosis) -> list[str]:
     part = f"{100.0 * found.closed_fraction:.0f} %"
     return [
         *out,
-        f"As a table over that state it takes away {part} of the misfit; to adopt it: hfa diagnose TEST --apply --unknown.",
+        f"As a table over that state it takes away {part} of the misfit.",
+        "To adopt it: hfa diagnose TEST --apply --unknown.",
     ]
 
 
