@@ -20,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study prediction-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study joint-study prediction-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -164,6 +164,9 @@ feed-laws: $(STAMP) ## injectors that flash and choke, and the replicas, by the 
 
 prediction-study: $(STAMP) ## the second of two tests predicted from the first, 60 times: into docs/predict.md; goes on where stopped
 	$(BIN)/python -m benchmarks.prediction --write docs/predict.md $(FLAGS)
+
+joint-study: $(STAMP) ## 400 draws of 2 to 10 simulated tests of one fuel, or with one of another; into docs/campaign.md
+	$(BIN)/python -m benchmarks.joint --write docs/campaign.md $(FLAGS)
 
 campaign-study: $(STAMP) ## 500 tests by a campaign beside two processes, and with workers killed; into docs/campaign.md
 	$(BIN)/python -m benchmarks.campaign --write docs/campaign.md $(FLAGS)

@@ -1,0 +1,223 @@
+"""One regression law of several tests of a stand: is it right, is it tighter, and is the test with another fuel named?
+
+python -m benchmarks.joint [--draws 400] [--write docs/campaign.md] (`make joint-study`)
+
+Six simulated stands whose laws are the model's (simulated/worlds, without departures), each with twenty tests of other
+loads, holes and temperatures and six more whose fuel regresses a tenth faster. Every draw takes 2 to 10 tests of a
+stand; half of the draws of four and more have one of the other fuel among them. Tests stand in several draws.
+What is done of a run that was stopped is kept below `.cache/joint`, for these sources.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from benchmarks.studies import one_thread, percent, put
+
+ROOT = Path(__file__).resolve().parent.parent
+STANDS, ALIKE, OTHER, FASTER = 6, 20, 6, 1.1
+SEED = 9_000_000
+SIZES = (2, 10)
+FROM_FOUR = 4
+"""Tests of a draw from which on one can be odd."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """Where the pool of tests is, and where a draw's answer goes."""
+
+    root: Path
+    out: Path | None = None
+
+
+@dataclass(frozen=True)
+class Draw:
+    """Tests of a stand, and which of them has the other fuel."""
+
+    name: str
+    tests: tuple[str, ...]
+    odd: str | None
+
+
+def names(stand: int, other: bool) -> list[str]:
+    """The tests of a stand with its fuel, or with the other one."""
+    return [f"J{stand}{'x' if other else ''}{i:02d}" for i in range(OTHER if other else ALIKE)]
+
+
+def write_stand(name: str, work: Work) -> None:
+    """The tests of one stand, and what is true of it."""
+    from simulated.blind.plan import Case
+    from simulated.worlds import engines, laws, loggers
+    from simulated.worlds.pairs import another
+    from simulated.worlds.write import constants, fired, put
+
+    number = int(name)
+    rng = np.random.default_rng(SEED + number)
+    plain = laws.World(np.zeros(laws.LAWS), "coolprop", (0.0, 0.0)).fading(0.01, 0.01)
+    engine, logger = list(engines.ENGINES)[number % 4], loggers.LOGGERS["250 Hz, quiet, a minute of rest"]
+    end = ("late", "left", "early")[number % 3]
+    first = engines.drawn(rng, engine, end, plain)
+    for other in (False, True):
+        for test in names(number, other):
+            own = another(rng, first, end, plain, {"C_i": 0.01, "regression rate": 0.0})
+            stand = replace(own, a=own.a * (FASTER if other else 1.0))
+            case = Case(test, "joint", (), 0.0, logger.name, number, number, stand=f"joint {number}")
+            made = fired(rng, case, stand, plain, (), logger, loggers.drawn(rng, logger, stand))
+            put(made, {"id": test, "truth": constants(stand)}, work.root)
+
+
+def plan(count: int) -> list[Draw]:
+    """The draws, always the same."""
+    rng = np.random.default_rng(SEED)
+    out = []
+    for i in range(count):
+        stand, size = int(rng.integers(STANDS)), int(rng.integers(SIZES[0], SIZES[1] + 1))
+        odd = str(rng.choice(names(stand, True))) if i % 2 and size >= FROM_FOUR else None
+        alike = rng.choice(names(stand, False), size - (odd is not None), replace=False).tolist()
+        out.append(Draw(f"D{i:03d}", (*alike, *([odd] if odd else [])), odd))
+    return out
+
+
+@lru_cache(maxsize=256)
+def alone(test: str, root: Path) -> tuple[Any, Any]:
+    """What a test says of its fuel, and the fit to it alone; made once by each worker."""
+    from hfanalysis.calibrate.regression import fit
+    from hfanalysis.campaign.regression import evidence_of_test
+
+    evidence = evidence_of_test(test, root, None)
+    return evidence, fit([evidence])
+
+
+def judge(name: str, work: Work) -> None:
+    """What the tests of a draw say together, kept as JSON; a test that says nothing of its fuel is left out."""
+    from hfanalysis.campaign.regression import together
+    from hfanalysis.errors import AbsentError
+
+    draw = next(one for one in plan(int(work.out.name)) if one.name == name) if work.out else None
+    assert draw is not None
+    assert work.out is not None
+    found, silent = {}, []
+    for test in draw.tests:
+        try:
+            found[test] = alone(test, work.root)
+        except AbsentError:
+            silent.append(test)
+    kept: dict[str, Any] = {"tests": list(found), "silent": silent, "odd": draw.odd if draw.odd in found else None}
+    if len(found) > 1:
+        law = together([e for e, _ in found.values()], [f for _, f in found.values()])
+        kept |= {
+            "a": law.a.to_json(), "n": law.n.to_json(), "agree": law.agreement.probability,
+            "named": law.odd.test if law.odd else None,
+            "alone": {test: own.n.std for test, own in law.alone.items()},
+        }  # fmt: skip
+    (work.out / f"{name}.json").write_text(json.dumps(kept))
+
+
+def main() -> int:
+    """The pool, the draws, and the lines of the page."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--draws", type=int, default=400)
+    parser.add_argument("--write", type=Path)
+    asked = parser.parse_args()
+    one_thread()
+    from benchmarks import joint as own  # by which workers find it
+
+    from hfanalysis.campaign.cluster import Cluster, version
+
+    kept = ROOT / ".cache" / "joint" / hashlib.sha256(version().encode()).hexdigest()[:12]
+    out = kept / str(asked.draws)
+    out.mkdir(parents=True, exist_ok=True)
+    with Cluster() as cluster:
+        stands = [str(i) for i in range(STANDS) if not (kept / "answers" / f"{names(i, True)[-1]}.json").exists()]
+        _all(cluster, own.write_stand, stands, own.Work(kept))
+        draws = [draw.name for draw in plan(asked.draws)]
+        _all(cluster, own.judge, [d for d in draws if not (out / f"{d}.json").exists()], own.Work(kept, out))
+    found = [json.loads((out / f"{name}.json").read_text()) for name in draws]
+    lines = told(found, _truth(kept))
+    print("\n".join(["", *lines]))
+    if asked.write:
+        put(asked.write, "joint", lines)
+    return 0
+
+
+def _all(cluster: Any, task: Any, todo: Sequence[str], work: Work) -> None:
+    for done, (name, outcome) in enumerate(cluster.each(task, todo, work), start=1):
+        if isinstance(outcome, str):
+            raise SystemExit(outcome)
+        print(f"\r{task.__name__}: {done} of {len(todo)} ({name})", end="", file=sys.stderr)
+
+
+def _truth(kept: Path) -> dict[str, dict[str, float]]:
+    """a and n of each stand, by its number."""
+    answers = {str(i): kept / "answers" / f"{names(i, False)[0]}.json" for i in range(STANDS)}
+    return {number: json.loads(path.read_text())["truth"] for number, path in answers.items()}
+
+
+def told(found: Sequence[dict[str, Any]], truth: dict[str, dict[str, float]]) -> list[str]:
+    """The lines of the page."""
+    known = [one for one in found if "n" in one]
+    level = [one for one in known if one["odd"] is None]
+    odd = [one for one in known if one["odd"] is not None and len(one["tests"]) >= FROM_FOUR]
+    many = [one for one in level if len(one["tests"]) >= FROM_FOUR]
+    lines = [
+        "| of draws without another fuel | a | n |",
+        "|---|---|---|",
+        *_intervals(level, truth),
+        f"| tighter than the tightest of the tests alone | | {_share(map(_tighter, level))} |",
+        "",
+        "| | |",
+        "|---|---|",
+        f"| one of 4 to 10 tests has another fuel: named | {_share(one['named'] == one['odd'] for one in odd)} |",
+        f"| another one is named there | {_share(one['named'] not in (None, one['odd']) for one in odd)} |",
+        f"| 4 to 10 tests of one fuel: one is named | {_share(one['named'] is not None for one in many)} |",
+        f"| tests of one fuel are said to disagree | {_share(one['agree'] < 0.01 for one in level)} |",
+    ]
+    silent = sum(len(one["silent"]) for one in found)
+    return [
+        *lines,
+        "",
+        f"{len(known)} of {len(found)} draws; tests that said nothing of a and n were left out {silent} times.",
+    ]
+
+
+def _intervals(level: Sequence[dict[str, Any]], truth: dict[str, dict[str, float]]) -> list[str]:
+    def of(one: dict[str, Any], name: str) -> tuple[float, float, tuple[float, float]]:
+        right = truth[one["tests"][0][1]][name]
+        return one[name]["value"], right, tuple(one[name]["ci95"] or (np.nan, np.nan))
+
+    off: dict[str, list[float]] = {"a": [], "n": []}
+    held: dict[str, list[bool]] = {"a": [], "n": []}
+    for one in level:
+        for name in off:
+            value, right, (low, high) = of(one, name)
+            off[name].append(value / right - 1.0 if name == "a" else value - right)
+            held[name].append(low <= right <= high)
+    a, n = (np.array(off[k]) for k in off)
+    return [
+        f"| mean error | {100.0 * a.mean():+.1f} % | {n.mean():+.4f} |",
+        f"| standard deviation | {100.0 * a.std():.1f} % | {n.std():.4f} |",
+        f"| 95 % intervals that hold the truth | {_share(held['a'])} | {_share(held['n'])} |",
+    ]
+
+
+def _tighter(one: dict[str, Any]) -> bool:
+    return bool(one["n"]["std"] < min(std for std in one["alone"].values() if std))
+
+
+def _share(found: Any) -> str:
+    """A share in words, with how many of how many."""
+    all_of = list(found)
+    return f"{percent(sum(all_of) / len(all_of) if all_of else None)} ({sum(all_of)} of {len(all_of)})"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
