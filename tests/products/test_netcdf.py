@@ -67,3 +67,19 @@ def test_the_check_finds_what_is_wrong(product: Path, spoil: Callable[[h5py.File
         spoil(file)
     with pytest.raises(AssertionError, match=said):
         check(product)
+
+
+def test_the_same_content_is_the_same_file_whenever_python_lets_go_of_it(tmp_path: Path) -> None:
+    """A chunk that waits in a cache is written when its variable is collected: the file then lies in another order."""
+
+    def written(name: str, keep: bool) -> bytes:
+        held = []
+        with netcdf.product(tmp_path / name, "a product", {}) as file:
+            netcdf.axis(file, "time", np.arange(2000.0))
+            for i in range(12):
+                flags = (np.arange(2000) % (i + 2)).astype(np.uint8)
+                made = netcdf.variable(file, f"v{i}", flags, ("1", "a part"))
+                held += [made] if keep else []
+        return (tmp_path / name).read_bytes()
+
+    assert written("one.h5", keep=False) == written("other.h5", keep=True)

@@ -24,6 +24,10 @@ CONVENTIONS = "CF-1.11"
 FORMAT = ("v108", "v110")
 """HDF5 versions that MATLAB and older tools read."""
 
+LAYOUT: dict[str, Any] = {"libver": FORMAT, "track_order": False, "rdcc_nbytes": 0}
+"""How a product's file is opened. Without a cache of chunks each is written where it comes: from a cache it is written
+when Python lets go of its variable, so that the same content lay elsewhere once in some hundred files."""
+
 About = tuple[str, str]
 """The unit of a variable, and its name in words."""
 
@@ -36,7 +40,7 @@ def product(path: Path, title: str, provenance: Mapping[str, Any], **more: Any) 
 
     Byte-identical for the same content. Raises OSError where the disk does not take it.
     """
-    with created(path, libver=FORMAT, track_order=False) as file:
+    with created(path, **LAYOUT) as file:
         describe(file, title, provenance)
         file.attrs.update(more)
         yield file

@@ -26,7 +26,7 @@ class Store:
     """Writes channels one at a time, so that only one is in memory."""
 
     def __init__(self, path: Path) -> None:
-        self._opened = created(path, libver=netcdf.FORMAT, track_order=False)
+        self._opened = created(path, **netcdf.LAYOUT)
         self._file = self._opened.__enter__()
         self._names: list[str] = []
 
