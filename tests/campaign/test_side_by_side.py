@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import cloudpickle
+import dask
 import distributed
 import psutil
 import pytest
@@ -60,6 +61,15 @@ def test_a_process_that_is_not_started_again_is_replaced(monkeypatch: pytest.Mon
         process.kill()
         assert dict(opened.each(killing, ["one"], Work(tmp_path))) == {"one": "one 1"}
         assert len(lent.plan) == 2
+
+
+def profiled(_name: str, _work: Work) -> bool:
+    """Whether the worker keeps a record of where its time goes, of every second, for ever."""
+    return bool(dask.config.get("distributed.worker.profile.enabled"))
+
+
+def test_workers_do_not_fill_their_memory_with_what_they_did(workers: Cluster, tmp_path: Path) -> None:
+    assert dict(workers.each(profiled, ["one"], Work(tmp_path))) == {"one": False}
 
 
 def test_nobody_else_reaches_the_processes(workers: Cluster) -> None:
