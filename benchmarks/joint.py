@@ -33,10 +33,16 @@ FROM_FOUR = 4
 
 @dataclass(frozen=True)
 class Work:
-    """Where the pool of tests is, and where a draw's answer goes."""
+    """Where the pool of tests is, how many draws there are, and (as every work has it) where products go."""
 
     root: Path
+    draws: int
     out: Path | None = None
+
+    @property
+    def answers(self) -> Path:
+        """The folder of the draws' answers."""
+        return self.root / f"draws-{self.draws}"
 
 
 @dataclass(frozen=True)
@@ -102,9 +108,7 @@ def judge(name: str, work: Work) -> None:
     from hfanalysis.campaign.regression import together
     from hfanalysis.errors import AbsentError
 
-    draw = next(one for one in plan(int(work.out.name)) if one.name == name) if work.out else None
-    assert draw is not None
-    assert work.out is not None
+    draw = next(one for one in plan(work.draws) if one.name == name)
     found, silent = {}, []
     for test in draw.tests:
         try:
@@ -119,7 +123,7 @@ def judge(name: str, work: Work) -> None:
             "named": law.odd.test if law.odd else None,
             "alone": {test: own.n.std for test, own in law.alone.items()},
         }  # fmt: skip
-    (work.out / f"{name}.json").write_text(json.dumps(kept))
+    (work.answers / f"{name}.json").write_text(json.dumps(kept))
 
 
 def main() -> int:
@@ -134,13 +138,14 @@ def main() -> int:
     from hfanalysis.campaign.cluster import Cluster, version
 
     kept = ROOT / ".cache" / "joint" / hashlib.sha256(version().encode()).hexdigest()[:12]
-    out = kept / str(asked.draws)
+    work = own.Work(kept, asked.draws)
+    out = work.answers
     out.mkdir(parents=True, exist_ok=True)
     with Cluster() as cluster:
         stands = [str(i) for i in range(STANDS) if not (kept / "answers" / f"{names(i, True)[-1]}.json").exists()]
-        _all(cluster, own.write_stand, stands, own.Work(kept))
+        _all(cluster, own.write_stand, stands, work)
         draws = [draw.name for draw in plan(asked.draws)]
-        _all(cluster, own.judge, [d for d in draws if not (out / f"{d}.json").exists()], own.Work(kept, out))
+        _all(cluster, own.judge, [d for d in draws if not (out / f"{d}.json").exists()], work)
     found = [json.loads((out / f"{name}.json").read_text()) for name in draws]
     lines = told(found, _truth(kept))
     print("\n".join(["", *lines]))

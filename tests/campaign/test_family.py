@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -72,6 +74,16 @@ def test_one_that_leaves_is_seen_where_there_is_a_family() -> None:
     values[6] += 12.0
     assert left_the_family(values) == [6]
     assert left_the_family([*[0.0] * (FAMILY - 2), 9.0]) == []
+    assert left_the_family([*[0.0] * 9, 0.001]) == []  # a step of the converter
+
+
+def test_an_effect_that_one_test_alone_has_sets_it_apart(tmp_path: Path) -> None:
+    rows = dict(made(tmp_path).tests)
+    rows.pop("D")
+    rows["C"], rows["A"] = rows["A"], rows["C"]
+    rows["B"] = rows["A"]
+    assert "the only one in which heat into the tank is named" in special("C", rows)
+    assert not any("is named" in words for words in special("A", rows))
 
 
 def law(rate: float, n: float, flux: float) -> FuelLaw:
@@ -100,8 +112,8 @@ def test_rates_are_compared_at_one_flux() -> None:
     assert rates({"T": FuelLaw.absent("no burn")}) == (0.0, {})
 
 
-def test_what_else_sets_it_apart_is_said(tmp_path: object) -> None:
-    product = made(tmp_path)  # type: ignore[arg-type]
+def test_what_else_sets_it_apart_is_said(tmp_path: Path) -> None:
+    product = made(tmp_path)
     rows = dict(product.tests)
     rows.pop("D")
     rows["C"] = rows["C"].but(
@@ -122,6 +134,10 @@ def test_what_else_sets_it_apart_is_said(tmp_path: object) -> None:
     )
     assert "It is also the only one with its injector, the last test and the longest burn." in said
     assert any(line.startswith("C left the family of the effective injector coefficient") for line in said)
+    none = stand.but(constants={"C_i": stand.constants["C_i"].but(odd=odd.but(of=Quantity(0.0, "")))})
+    assert "C does not fit the rest: its effective injector coefficient is not zero, as theirs is." in conclusions(
+        none, product.tests
+    )
     of_law = stand.but(regression=CommonLaw.model_construct(odd=odd.but(special=()), flux=220.0))
     said = conclusions(of_law, product.tests)
     assert any("its regression rate at 220 kg/(m² s) is" in line for line in said)

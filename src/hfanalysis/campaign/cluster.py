@@ -125,7 +125,7 @@ class Cluster:
             "distributed.scheduler.http.routes": [],  # nothing is told to who asks by a browser
             "distributed.worker.http.routes": [],
             "distributed.admin.system-monitor.gil.enabled": False,
-            "distributed.worker.profile.enabled": False,  # its record of every second grew by a megabyte a test
+            "distributed.worker.profile.enabled": False,  # its record of every second grows as long as a worker lives
         }
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         with dask.config.set(settings), ExitStack() as opened:

@@ -61,6 +61,9 @@ def _odd_ones(stand: StandRow) -> Iterator[str]:
 
 def _odd(odd: Odd, words: str) -> Iterator[str]:
     apart, rest = odd.apart.value or 0.0, odd.of.value or 0.0
+    if rest == 0.0:
+        yield f"{odd.test} does not fit the rest: its {words} is not zero, as theirs is."
+        return
     by, off = abs(100.0 * apart / rest), abs(100.0 * (odd.apart.std or 0.0) / rest)
     chance = "less than 0.001" if odd.probability < 1e-3 else f"{odd.probability:.2g}"
     yield (

@@ -1,4 +1,4 @@
-"""Which test does not fit the rest, and which left the family of those before it."""
+"""Which test does not fit the rest, and which lies beyond the limits of all tests in order."""
 
 from __future__ import annotations
 
@@ -111,7 +111,8 @@ def rates(laws: Mapping[str, FuelLaw]) -> tuple[float, dict[str, Quantity]]:
 
 def left_the_family(in_order: Sequence[float]) -> list[int]:
     """Which of the numbers of tests, in the order of their dates, lie beyond the natural limits of all of them; none
-    where they are too few to have such limits.
+    where they are too few to have such limits, or where most of them are equal: then a step of the converter is no
+    limit.
 
     >>> left_the_family([1.0, 1.1, 0.9, 1.0, 1.1, 1.0, 0.9, 2.0])
     [7]
@@ -120,4 +121,4 @@ def left_the_family(in_order: Sequence[float]) -> list[int]:
         return []
     half = NATURAL * median(abs(b - a) for a, b in pairwise(in_order))
     middle = median(in_order)
-    return [i for i, value in enumerate(in_order) if abs(value - middle) > half]
+    return [i for i, value in enumerate(in_order) if abs(value - middle) > half > 0.0]

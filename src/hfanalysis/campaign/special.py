@@ -29,7 +29,7 @@ def special(test: str, rows: Mapping[str, TestRow]) -> Iterator[str]:
     for name, (most, least) in NUMBERS.items():
         yield from _beyond(own.performance.get(name), [row.performance.get(name) for row in others], most, least)
     named = set(_effects(own)).difference(*map(_effects, others))
-    yield from (f"the only one that lacks {called(name)}" for name in sorted(named))
+    yield from (f"the only one in which {called(name)} is named" for name in sorted(named))
 
 
 def _effects(row: TestRow) -> list[str]:

@@ -155,5 +155,10 @@ class AdoptedEffect(Part):
     file: Annotated[str, Is("in engines/, which states it")]
     parameters: Annotated[dict[str, Quantity], Is("as stated, by name")]
 
+    @property
+    def table(self) -> list[Quantity]:
+        """The values of one that is a table over a state; empty of an effect of the library."""
+        return [quantity for name, quantity in self.parameters.items() if name.startswith("value_")]
+
 
 Adopted = Annotated[tuple[AdoptedEffect, ...], Is("adopted effects in the model that this was made with")]

@@ -167,7 +167,9 @@ def included(material: Material) -> str:
     effects = material.included
     if not effects:
         return ""
-    first = effects[0].but(parameters=dict(list(effects[0].parameters.items())[:1]))
+    first = effects[0]
+    if not first.table:
+        first = first.but(parameters=dict(list(first.parameters.items())[:1]))
     words, more = effect_in_words(first, called), len(effects) - 1
     return f"Included in the model: {words}{f', and {_count(more)} more' if more else ''}; the numbers hold with it."
 

@@ -244,7 +244,10 @@ def adopted_in_words(effects: Sequence[AdoptedEffect], called: Callable[[str], s
 
 
 def effect_in_words(effect: AdoptedEffect, called: Callable[[str], str]) -> str:
-    """An adopted effect with its size, in the units of people at a stand."""
+    """An adopted effect with its size, in the units of people at a stand; of a table its ends."""
+    if effect.table:
+        in_order = sorted(effect.table, key=lambda quantity: quantity.value or 0.0)
+        return f"{called(effect.name)}, {_plainly(in_order[0])} to {_plainly(in_order[-1])}"
     return f"{called(effect.name)}, {_values_in_words(effect.parameters)}"
 
 

@@ -19,8 +19,10 @@ from hfanalysis.effects import FOLDER, library, trust
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import effects_in, read_adopted, tables
 from hfanalysis.products.diagnosis import Diagnosis, Learnt, OtherTest, PowerLaw
+from hfanalysis.report.names import called
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
+from hfanalysis.wording.numbers import adopted_in_words
 
 NAME = "unknown_regression_factor_by_oxidizer_flux"
 VALUES = [0.0, 0.1, 0.2, 0.1, 0.0, -0.1, 0.0, 0.1]
@@ -142,3 +144,12 @@ def test_the_words_tell_the_state_the_hint_and_the_command() -> None:
     assert learnt_sentences(unknown(learnt=None, not_learnt="it is an event")) == [
         "It cannot be adopted as it was found: it is an event."
     ]
+
+
+def test_it_is_told_by_the_ends_of_its_table(root: Path) -> None:
+    adopt(opened(root), unknown(), unknown=True)
+    found = read_adopted(root, opened(root).definition).product()
+    told = adopted_in_words(found, called)
+    assert told == (
+        "Included in the model: unknown regression factor by oxidizer flux, −0.1 to 0.2 (engines/T1.effects.toml)."
+    )

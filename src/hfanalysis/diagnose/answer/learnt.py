@@ -18,8 +18,10 @@ from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.effects.learnt import KNOTS, STATES, hats, learnt, name_of, state_at, states_of
 from hfanalysis.engine.effect import Active
 from hfanalysis.inference.candidate import SHORT, Candidate, attempted
+from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.gap import closed, frozen, total_gap
+from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import has_name
 from hfanalysis.inference.unknowns.smooth_source import SmoothSource, smooth_prior
 from hfanalysis.products.diagnosis import Learnt, PowerLaw
@@ -87,45 +89,75 @@ def learn(found: Naming, chosen: Candidate) -> Learning:
         return Learning(reason="it is an event at an instant, not a course over a state of the engine")
     if source.place.sensor is not None:
         return Learning(reason=f"it is in what {source.place.sensor} reads: hfa health tells of sensors")
-    observed, fitted = found.bench.observed, chosen.fit
+    course = _course_of(source, chosen.fit, found.bench.observed)
+    free = closed(*(total_gap(f, found.bench.observed) for f in (found.base.fit, chosen.fit)))
+    if not course.tables or free is None:
+        return Learning(reason="no channel is off by more than its noise: there is nothing that a table could close")
+    shares = {}
+    for over in course.alike:  # the likeliest beforehand first; time last: at another load things come at other times
+        active = learnt(course.effect(over)).at(strength=1.0, **_numbers(over))
+        shares[over.state] = share = _closes(found, chosen, active)
+        if share >= HALF * free:
+            return Learning(active, _product(course, over, active, share, tuple(shares)))
+    best = max(shares, key=lambda state: shares[state])
+    closes = f"{max(shares[best], 0.0):.0%} where over time it closes {free:.0%}"
+    return Learning(reason=f"it follows no state of the engine: over {STATES[best][2]}, the best, it closes {closes}")
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """A source at ``time`` (n,) [s], its ``mean`` and ``std`` (n,) in the unit of its site, the ``states`` (n,) [SI] that
+    it may follow, and the tables over them."""
+
+    source: SmoothSource
+    time: Array
+    mean: Array
+    std: Array
+    states: Mapping[str, Array]
+    tables: tuple[Over, ...]
+
+    @property
+    def most(self) -> float:
+        """The largest log evidence."""
+        return max(over.log_evidence for over in self.tables)
+
+    @property
+    def alike(self) -> list[Over]:
+        """The tables that are not told apart from the best, the likeliest beforehand first."""
+        return [over for over in self.tables if over.log_evidence > self.most - ALIKE]
+
+    def effect(self, over: Over) -> str:
+        """The name of the effect that a table is."""
+        return name_of(self.source.place.name, over.state, bool(np.isfinite(self.source.splines.liquid_out)))
+
+
+def _course_of(source: SmoothSource, fitted: Fit, observed: Observed) -> _Followed:
     time = np.linspace(0.0, observed.last, 2 * source.splines.count)
     time = time[time < source.splines.liquid_out]
     mean, slopes, covariance = source.course(fitted, time)
     spread = slopes @ covariance @ slopes.T
     environments = _environments(Course.of(fitted, observed, time))
-    courses = {
+    states = {
         state: np.array([state_at(state, t, e) for t, e in zip(time, environments, strict=True)])
         for state in states_of(source.place.name)
     }
-    tables = [over for state, own in courses.items() if (over := over_state(state, own, mean, spread)) is not None]
-    free = closed(*(total_gap(f, observed) for f in (found.base.fit, fitted)))
-    if not tables or free is None:
-        return Learning(reason="no channel is off by more than its noise: there is nothing that a table could close")
-    most, wet = max(over.log_evidence for over in tables), bool(np.isfinite(source.splines.liquid_out))
-    alike = [over for over in tables if over.log_evidence > most - ALIKE]
-    shares = {}
-    for (
-        over
-    ) in alike:  # the likeliest beforehand first; time is the last, for at another load things come at other times
-        active = learnt(name_of(source.place.name, over.state, wet)).at(strength=1.0, **_numbers(over))
-        shares[over.state] = share = _closes(found, chosen, active)
-        if share < HALF * free:
-            continue
-        product = Learnt(
-            effect=active.effect.name,
-            site=source.place.name,
-            equation=active.effect.equation,
-            state=over.state,
-            parameters=quantities(active),
-            evidences={one.state: one.log_evidence - most for one in tables},
-            alike=tuple(one.state for one in alike if one is not over and one.state not in shares),
-            closed_fraction=share,
-            hint=hint(courses, mean, np.sqrt(np.maximum(spread.diagonal(), 0.0)), time),
-        )
-        return Learning(active, product)
-    best = max(shares, key=lambda state: shares[state])
-    closes = f"{max(shares[best], 0.0):.0%} where over time it closes {free:.0%}"
-    return Learning(reason=f"it follows no state of the engine: over {STATES[best][2]}, the best, it closes {closes}")
+    tables = (over_state(state, own, mean, spread) for state, own in states.items())
+    std = np.sqrt(np.maximum(spread.diagonal(), 0.0))
+    return _Followed(source, time, mean, std, states, tuple(over for over in tables if over is not None))
+
+
+def _product(course: _Followed, over: Over, active: Active, share: float, tried: tuple[str, ...]) -> Learnt:
+    return Learnt(
+        effect=active.effect.name,
+        site=course.source.place.name,
+        equation=active.effect.equation,
+        state=over.state,
+        parameters=quantities(active),
+        evidences={one.state: one.log_evidence - course.most for one in course.tables},
+        alike=tuple(one.state for one in course.alike if one.state not in tried),
+        closed_fraction=share,
+        hint=hint(course.states, course.mean, course.std, course.time),
+    )
 
 
 def _environments(course: Course) -> Array:

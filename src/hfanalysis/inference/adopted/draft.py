@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from hfanalysis.effects.learnt import STATES
-from hfanalysis.engine.sites import HOOK_OF_SITE
+from hfanalysis.engine.sites import AT_CHAMBER, AT_FLOW, AT_TANK, HOOK_OF_SITE, RATES
 from hfanalysis.products.diagnosis import Learnt
 
-HOOKS = {0: "AT_TANK", 1: "AT_CHAMBER", 2: "AT_FLOW"}
-"""What hooks are called where they are not RATES."""
+HOOKS = {AT_TANK: "AT_TANK", AT_CHAMBER: "AT_CHAMBER", AT_FLOW: "AT_FLOW", RATES: "RATES"}
+"""What hooks are called in an effect file."""
 
 IN_CODE = {"oxidizer_flux": ("env[OXIDIZER_FLOW] / (np.pi * env[PORT_RADIUS] ** 2)", ("OXIDIZER_FLOW", "PORT_RADIUS"))}
 """States that are no entry of the environment."""
 
-_DRAFT = '''"""TODO: what it is. A draft by hfanalysis: {hint}; a hint, not a name."""
+_DRAFT = '''"""A draft by hfanalysis, to be finished: {hint}; a hint, not a name."""
 
 import numpy as np
 
@@ -29,12 +29,12 @@ def _term(hook, t, env, c, p, x, site, dx):
 EFFECT = Effect(
     name="{name}",  # the name of this file, without .py
     equation="{equation}",
-    meaning="TODO: in a sentence",
-    reference="TODO: where the law is from",
+    meaning="not known yet: {hint}",
+    reference="none yet: where the law is from",
     formula="{formula}",
     sites=("{site_name}",),
     parameters=(
-        Parameter("strength", "{unit}", "TODO", typical={factor:.6g}),
+        Parameter("strength", "-", "of the product of powers, all in SI", typical={factor:.6g}),
         Parameter("start", "s", "from when on it acts", typical=0.5, center={start:.3g}),
 {exponents}
     ),
@@ -49,7 +49,7 @@ def draft(found: Learnt, name: str) -> str | None:
     hint = found.hint
     if hint is None:
         return None
-    hook = HOOKS.get(HOOK_OF_SITE.get(found.site, 3), "RATES")
+    hook = HOOKS[HOOK_OF_SITE.get(found.site, RATES)]
     terms, exponents, used = [], [], {hook, found.site.upper()}
     for place, (state, power) in enumerate(hint.powers.items()):
         code, names = IN_CODE.get(state, (f"env[{state.upper()}]", (state.upper(),)))
@@ -61,5 +61,5 @@ def draft(found: Learnt, name: str) -> str | None:
     return _DRAFT.format(
         hint=hint.words, names=", ".join(sorted(used)), hook=hook, site=found.site.upper(), powers=" * ".join(terms),
         name=name, equation=found.equation, formula=" ".join(f"{s}^{p:.2g}" for s, p in hint.powers.items()),
-        site_name=found.site, unit="-", factor=abs(hint.factor), start=hint.start, exponents="\n".join(exponents),
+        site_name=found.site, factor=abs(hint.factor), start=hint.start, exponents="\n".join(exponents),
     )  # fmt: skip
