@@ -38,10 +38,8 @@ def apply(request: Request, stand: bool, unknown: bool = False) -> None:
     tell(f"{path}: written; every stage of {_whose(context, stand)} now has it in its model")
     if unknown and found.learnt is not None:
         tell(_proved_elsewhere(found))
-        if (path := write_draft(context, found.learnt)) is not None:
-            tell(
-                f"{path}: a draft of an effect of its form; to make it the team's own, rename it draft_{context.id}.py"
-            )
+        if (form := write_draft(context, found.learnt)) is not None:
+            tell(f"{form}: a draft of an effect of its form; rename it draft_{context.id}.py to make it the team's own")
     tell(f"next: hfa run {context.id} shows m, the misfit and the flight with it; a test of another load would try it")
 
 

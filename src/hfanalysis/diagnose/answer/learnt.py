@@ -106,8 +106,8 @@ def learn(found: Naming, chosen: Candidate) -> Learning:
 
 @dataclass(frozen=True)
 class _Followed:
-    """A source at ``time`` (n,) [s], its ``mean`` and ``std`` (n,) in the unit of its site, the ``states`` (n,) [SI] that
-    it may follow, and the tables over them."""
+    """A source at ``time`` (n,) [s], its ``mean`` and ``std`` (n,) in the unit of its site, the ``states`` (n,) [SI]
+    that it may follow, and the tables over them."""
 
     source: SmoothSource
     time: Array
