@@ -132,7 +132,7 @@ def test_what_else_sets_it_apart_is_said(tmp_path: Path) -> None:
         "C does not fit the rest: its effective injector coefficient is 26.7 ± 0.7 % above theirs "
         "(by chance: less than 0.001)." in said
     )
-    assert "It is also the only one with its injector, the last test and the longest burn." in said
+    assert "What else sets it apart: the only one with its injector, the last test and the longest burn." in said
     assert any(line.startswith("C left the family of the effective injector coefficient") for line in said)
     none = stand.but(constants={"C_i": stand.constants["C_i"].but(odd=odd.but(of=Quantity(0.0, "")))})
     assert "C does not fit the rest: its effective injector coefficient is not zero, as theirs is." in conclusions(

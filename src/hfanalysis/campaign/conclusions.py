@@ -71,7 +71,7 @@ def _odd(odd: Odd, words: str) -> Iterator[str]:
         f"{'above' if apart * rest > 0.0 else 'below'} theirs (by chance: {chance})."
     )
     if odd.special:
-        yield f"It is also {listed(list(odd.special))}."
+        yield f"What else sets it apart: {listed(list(odd.special))}."
     else:
         yield "Nothing else that is known sets it apart: look at its fuel, its injector and its sensors."
 
