@@ -20,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study joint-study prediction-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study joint-study prediction-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick worlds-tried readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -106,6 +106,7 @@ benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.localisation
 	$(BIN)/python -m benchmarks.diagnosis_speed
 	$(BIN)/python -m benchmarks.archive
+	$(BIN)/python -m benchmarks.campaign_page
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python -m benchmarks.ingest_1gb --gigabytes 1; fi
 
 # Only the tests and the benchmark use it: it has an environment of its own, and where it cannot be installed they go on
@@ -192,6 +193,10 @@ blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-n
 
 worlds-quick: $(STAMP) ## 60 tests on other engines, by other loggers and laws: docs/worlds-quick.md; goes on where stopped
 	$(BIN)/python -m benchmarks.worlds_quick --jobs 2 --write docs/worlds-quick.md $(FLAGS)
+
+worlds-tried: $(STAMP) ## 120 tests of wider worlds: what the diagnosis says of where it was tried (worlds.json)
+	$(BIN)/python -m benchmarks.worlds_quick --set calibration --limit 120 --jobs 2 \
+		--tried src/hfanalysis/diagnose/answer/worlds.json $(FLAGS)
 
 # A part of the method left out each time, on tests of the kind that it is there for; beside all that is kept, for it is
 # the same page. What tempering is there for no simulated test has: `make replicas`.

@@ -4,7 +4,8 @@ python -m benchmarks.joint [--draws 400] [--write docs/campaign.md] (`make joint
 
 Six simulated stands whose laws are the model's (simulated/worlds, without departures), each with twenty tests of other
 loads, holes and temperatures and six more whose fuel regresses a tenth faster. Every draw takes 2 to 10 tests of a
-stand; half of the draws of four and more have one of the other fuel among them. Tests stand in several draws.
+stand; half of the draws of two, and of four and more, have one of the other fuel among them. Tests stand in several
+draws. Each is calibrated as a campaign has it, and the draws' tests have one law as a campaign gives it.
 What is done of a run that was stopped is kept below `.cache/joint`, for these sources.
 """
 
@@ -14,9 +15,8 @@ import argparse
 import hashlib
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -29,20 +29,6 @@ SEED = 9_000_000
 SIZES = (2, 10)
 FROM_FOUR = 4
 """Tests of a draw from which on one can be odd."""
-
-
-@dataclass(frozen=True)
-class Work:
-    """Where the pool of tests is, how many draws there are, and (as every work has it) where products go."""
-
-    root: Path
-    draws: int
-    out: Path | None = None
-
-    @property
-    def answers(self) -> Path:
-        """The folder of the draws' answers."""
-        return self.root / f"draws-{self.draws}"
 
 
 @dataclass(frozen=True)
@@ -59,7 +45,7 @@ def names(stand: int, other: bool) -> list[str]:
     return [f"J{stand}{'x' if other else ''}{i:02d}" for i in range(OTHER if other else ALIKE)]
 
 
-def write_stand(name: str, work: Work) -> None:
+def write_stand(name: str, work: Any) -> None:
     """The tests of one stand, and what is true of it."""
     from simulated.blind.plan import Case
     from simulated.worlds import engines, laws, loggers
@@ -87,43 +73,30 @@ def plan(count: int) -> list[Draw]:
     out = []
     for i in range(count):
         stand, size = int(rng.integers(STANDS)), int(rng.integers(SIZES[0], SIZES[1] + 1))
-        odd = str(rng.choice(names(stand, True))) if i % 2 and size >= FROM_FOUR else None
+        odd = str(rng.choice(names(stand, True))) if i % 2 and size != 3 else None
         alike = rng.choice(names(stand, False), size - (odd is not None), replace=False).tolist()
         out.append(Draw(f"D{i:03d}", (*alike, *([odd] if odd else [])), odd))
     return out
 
 
-@lru_cache(maxsize=256)
-def alone(test: str, root: Path) -> tuple[Any, Any]:
-    """What a test says of its fuel, and the fit to it alone; made once by each worker."""
-    from hfanalysis.calibrate.regression import fit
-    from hfanalysis.campaign.regression import evidence_of_test
-
-    evidence = evidence_of_test(test, root, None)
-    return evidence, fit([evidence])
-
-
-def judge(name: str, work: Work) -> None:
-    """What the tests of a draw say together, kept as JSON; a test that says nothing of its fuel is left out."""
-    from hfanalysis.campaign.regression import together
+def judge(draw: Draw, laws: Mapping[str, Any]) -> dict[str, Any]:
+    """What the tests of a draw say together, by the ``laws`` of all; a test that says nothing of its fuel is left
+    out."""
+    from hfanalysis.campaign.common_law import common_law, counts
     from hfanalysis.errors import AbsentError
 
-    draw = next(one for one in plan(work.draws) if one.name == name)
-    found, silent = {}, []
-    for test in draw.tests:
-        try:
-            found[test] = alone(test, work.root)
-        except AbsentError:
-            silent.append(test)
-    kept: dict[str, Any] = {"tests": list(found), "silent": silent, "odd": draw.odd if draw.odd in found else None}
-    if len(found) > 1:
-        law = together([e for e, _ in found.values()], [f for _, f in found.values()])
-        kept |= {
-            "a": law.a.to_json(), "n": law.n.to_json(), "agree": law.agreement.probability,
-            "named": law.odd.test if law.odd else None,
-            "alone": {test: own.n.std for test, own in law.alone.items()},
-        }  # fmt: skip
-    (work.answers / f"{name}.json").write_text(json.dumps(kept))
+    silent = [test for test in draw.tests if test not in laws or not counts(laws[test])]
+    tests = [test for test in draw.tests if test not in silent]
+    out = {"tests": tests, "silent": silent, "odd": draw.odd if draw.odd in tests else None}
+    try:
+        law = common_law({test: laws[test] for test in tests})
+    except AbsentError as error:
+        return out | {"reason": str(error)}
+    return out | {
+        "a": law.a.to_json(), "n": law.n.to_json(), "agree": law.agreement.probability,
+        "named": law.odd.test if law.odd else None,
+        "alone": {test: own.n.std for test, own in law.alone.items()},
+    }  # fmt: skip
 
 
 def main() -> int:
@@ -136,25 +109,28 @@ def main() -> int:
     from benchmarks import joint as own  # by which workers find it
 
     from hfanalysis.campaign.cluster import Cluster, version
+    from hfanalysis.campaign.regression import law_in
+    from hfanalysis.campaign.side_by_side import Work, run_one
+    from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.disk import read_json
 
     kept = ROOT / ".cache" / "joint" / hashlib.sha256(version().encode()).hexdigest()[:12]
-    work = own.Work(kept, asked.draws)
-    out = work.answers
-    out.mkdir(parents=True, exist_ok=True)
+    work = Work(kept, to="calibrate")
+    tests = [test for i in range(STANDS) for other in (False, True) for test in names(i, other)]
+    files = {test: kept / "processed" / test / Calibration.file for test in tests}
     with Cluster() as cluster:
         stands = [str(i) for i in range(STANDS) if not (kept / "answers" / f"{names(i, True)[-1]}.json").exists()]
         _all(cluster, own.write_stand, stands, work)
-        draws = [draw.name for draw in plan(asked.draws)]
-        _all(cluster, own.judge, [d for d in draws if not (out / f"{d}.json").exists()], work)
-    found = [json.loads((out / f"{name}.json").read_text()) for name in draws]
-    lines = told(found, _truth(kept))
+        _all(cluster, run_one, [test for test, file in files.items() if not file.exists()], work)
+    laws = {test: law_in(Calibration.from_json(read_json(file))) for test, file in files.items() if file.exists()}
+    lines = told([judge(draw, laws) for draw in plan(asked.draws)], _truth(kept))
     print("\n".join(["", *lines]))
     if asked.write:
         put(asked.write, "joint", lines)
     return 0
 
 
-def _all(cluster: Any, task: Any, todo: Sequence[str], work: Work) -> None:
+def _all(cluster: Any, task: Any, todo: Sequence[str], work: Any) -> None:
     for done, (name, outcome) in enumerate(cluster.each(task, todo, work), start=1):
         if isinstance(outcome, str):
             raise SystemExit(outcome)
@@ -172,6 +148,7 @@ def told(found: Sequence[dict[str, Any]], truth: dict[str, dict[str, float]]) ->
     known = [one for one in found if "n" in one]
     level = [one for one in known if one["odd"] is None]
     odd = [one for one in known if one["odd"] is not None and len(one["tests"]) >= FROM_FOUR]
+    pairs = [one for one in known if one["odd"] is not None and len(one["tests"]) == 2]
     many = [one for one in level if len(one["tests"]) >= FROM_FOUR]
     lines = [
         "| of draws without another fuel | a | n |",
@@ -184,6 +161,7 @@ def told(found: Sequence[dict[str, Any]], truth: dict[str, dict[str, float]]) ->
         f"| one of 4 to 10 tests has another fuel: named | {_share(one['named'] == one['odd'] for one in odd)} |",
         f"| another one is named there | {_share(one['named'] not in (None, one['odd']) for one in odd)} |",
         f"| 4 to 10 tests of one fuel: one is named | {_share(one['named'] is not None for one in many)} |",
+        f"| one of two has another fuel: they are said to disagree | {_share(one['agree'] < 0.01 for one in pairs)} |",
         f"| tests of one fuel are said to disagree | {_share(one['agree'] < 0.01 for one in level)} |",
     ]
     silent = sum(len(one["silent"]) for one in found)

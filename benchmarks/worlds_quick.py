@@ -1,6 +1,6 @@
 """Sixty tests on other engines, by other loggers and laws, diagnosed and scored: every change is judged at once.
 
-python -m benchmarks.worlds_quick [--set quick] [--limit 60] [--jobs 2] [--write docs/worlds-quick.md]
+python -m benchmarks.worlds_quick [--set quick] [--limit 60] [--jobs 2] [--write docs/worlds-quick.md] [--tried FILE]
 
 Tests and what was found lie under .cache/worlds/SET; a run goes on where it was stopped, and what another version of
 the package found is found anew. Answers are read only to score.
@@ -199,6 +199,20 @@ def listing(cases: Sequence[Scored]) -> list[str]:
     return lines
 
 
+def tried(cases: Sequence[Scored]) -> list[dict[str, Any]]:
+    """Under which conditions each test was taken, what was stated of it most surely, and whether that was right."""
+    from hfanalysis.diagnose.answer.tried_on import CHANNELS, WORDS
+
+    out = []
+    for c in cases:
+        if (found := c.product.get("tried_on")) is not None:
+            lacks = [name for name in CHANNELS if name not in c.product["compared"]["channels"]]
+            stated = round(max(c.stated.values(), default=0.0), 4)
+            numbers = {name: float(f"{found[name]:.4g}") for name in WORDS}
+            out.append({"world": c.answer["logger"], **numbers, "lacks": lacks, "stated": stated, "right": not c.wrong})
+    return out
+
+
 def main() -> int:
     """Diagnose all tests, two at a time, and say after each how far it is."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -207,6 +221,7 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", default="", help="ids, with commas")
     parser.add_argument("--write", type=Path)
+    parser.add_argument("--tried", type=Path, help="where the diagnosis keeps what became of it in these tests")
     asked = parser.parse_args()
     one_thread()
     root, digest = CACHE / asked.set, digest_of(PACKAGE)
@@ -233,6 +248,8 @@ def main() -> int:
         print(f"\n{len(todo)} tests in {(perf_counter() - started) / 60.0:.1f} minutes", file=sys.stderr)
     if asked.write:
         put(asked.write, "worlds", lines)
+    if asked.tried:
+        asked.tried.write_text(json.dumps({"set": asked.set, "tests": tried(cases)}, indent=1) + "\n", encoding="utf-8")
     return 0
 
 

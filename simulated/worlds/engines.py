@@ -1,4 +1,4 @@
-"""Four engines and their tests: 1 kN with a tank of 3 L, 9 kN with 42 L, and two of the report's class."""
+"""Engines and their tests: from 0.3 kN with a tank of 2 L to 15 kN with 60 L, and two of the report's class."""
 
 from __future__ import annotations
 
@@ -36,7 +36,12 @@ ENGINES = {
     "2 kN": Class(11e-3, (3.5, 5.0), (9e5, 18e5), (180.0, 350.0)),
     "4 kN": Class(18e-3, (3.0, 4.5), (10e5, 22e5), (200.0, 420.0)),
     "9 kN": Class(42e-3, (3.2, 4.8), (15e5, 28e5), (250.0, 450.0)),
+    "0.3 kN": Class(2e-3, (4.5, 7.0), (10e5, 22e5), (150.0, 350.0)),
+    "15 kN": Class(60e-3, (2.6, 3.6), (18e5, 32e5), (250.0, 480.0)),
 }
+QUICK = ("1 kN", "2 kN", "4 kN", "9 kN")
+"""The engines of the first sets."""
+
 ENDS = ("left", "early", "together", "late")
 """How the fuel ends: some is left, or it ends well before the liquid, within 0.06 s of it, or well after."""
 

@@ -56,7 +56,7 @@ def d_prime(
     good = centers > AROUND
     for instant in (true.t_v, true.t_fuel_out):
         good &= ~(np.abs(centers - instant) < AROUND + 0.5 * BLOCK)
-    per, columns = round(BLOCK / STEP), [c for c in range(len(s.CHANNELS)) if s.CHANNELS[c] != "p_purge"]
+    per, columns = round(BLOCK / STEP), [i for i, c in enumerate(s.CHANNELS) if c not in ("p_purge", *logger.lacks)]
     sizes = np.array([SIZE[UNITS[c]] for c in s.CHANNELS])
     samples = max(logger.rate * BLOCK, 1.0)
     slow = np.array([sum(v * v for v, _ in one) for one in with_.slow])

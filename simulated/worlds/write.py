@@ -8,6 +8,8 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -73,16 +75,27 @@ def put(made: Built, answer: dict[str, object], root: Path, rocket: str = "") ->
     """A test's folder, with the section of its ``rocket``; the answer comes last, whole."""
     folder = root / "raw_tests" / made.case.id
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "test.toml").write_text(document(made) + rocket, encoding="utf-8")
+    lacking = [
+        name for name, seen in zip(s.CHANNELS, np.isfinite(made.log.values).any(axis=0), strict=True) if not seen
+    ]
+    (folder / "test.toml").write_text(_without(document(made), lacking) + rocket, encoding="utf-8")
     frame = pd.DataFrame({"Time (s)": [f"{t:.4f}" for t in made.log.time]})
-    for i, name in enumerate(s.CHANNELS):
-        frame[column(name)] = made.log.values[:, i]
+    for name in [c for c in s.CHANNELS if c not in lacking]:
+        frame[column(name)] = made.log.values[:, s.CHANNELS.index(name)]
     frame.to_csv(folder / "log.csv", index=False, float_format="%.4f", lineterminator="\n")
     path = answer_path(made.case.id, root)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(f".{os.getpid()}.part")
     part.write_text(json.dumps(answer, indent=1), encoding="utf-8")
     os.replace(part, path)
+
+
+def _without(document: str, channels: Sequence[str]) -> str:
+    """test.toml without channels that the stand does not have."""
+    for name in channels:
+        document = re.sub(rf"\[channels\.{name}\]\n(?:[^\n]+\n)+", "", document)
+        document = document.replace(f'"{name}", ', "").replace(f', "{name}"', "")
+    return document
 
 
 def _none() -> se.Instruments:

@@ -17,7 +17,6 @@ from hfanalysis.products.flight import Flight
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition, load_definition
-from hfanalysis.stages.base import silent
 
 
 def quantity(value: float, std: float, unit: str = "", verdict: str | None = "identified") -> dict[str, Any]:
@@ -72,6 +71,6 @@ def made(root: Path) -> Campaign:
     products(processed / "B", 0.303, quantity(1.05, 0.02), 1100.0)
     products(processed / "C", 0.380, free, None)
     rows = {test: row_of(definition(root, test), processed / test, Ended(0, "")) for test in "ABC"}
-    stand = stand_row(rows, root, None, silent)
+    stand = stand_row(rows, processed)
     broken = row_of(None, processed / "D", Ended(2, "raw_tests/D/test.toml: <b>found nothing</b>"))
     return Campaign(tests={**rows, "D": broken}, stands={"cell 3": stand})

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from tests.campaign.rows import made
 
 from hfanalysis.campaign.conclusions import conclusions
-from hfanalysis.campaign.family import FAMILY, left_the_family, odd_one, rates
+from hfanalysis.campaign.family import FAMILY, left_the_family, odd_one
 from hfanalysis.campaign.special import special
-from hfanalysis.products.calibration import FuelLaw, RegressionBasis
 from hfanalysis.products.campaign import CommonLaw, Odd
 from hfanalysis.quantity import Quantity
 
@@ -84,32 +83,6 @@ def test_an_effect_that_one_test_alone_has_sets_it_apart(tmp_path: Path) -> None
     rows["B"] = rows["A"]
     assert "the only one in which heat into the tank is named" in special("C", rows)
     assert not any("is named" in words for words in special("A", rows))
-
-
-def law(rate: float, n: float, flux: float) -> FuelLaw:
-    basis = RegressionBasis(reference_flux=Quantity(flux, "kg/m^2/s"))
-    return FuelLaw(
-        a=Quantity(rate * flux**-n, ""), n=Quantity(n, "", 0.05),
-        regression_rate_reference=Quantity(rate, "m/s", 0.01 * rate), regression=basis,
-    )  # fmt: skip
-
-
-def test_rates_are_compared_at_one_flux() -> None:
-    """Of one law at several fluxes all rates are the same; one of another batch of fuel is not."""
-    a, n = 1.3e-4, 0.5
-    laws = {f"T{i}": law(a * g**n, n, g) for i, g in enumerate((150.0, 200.0, 250.0, 300.0))}
-    laws["X"] = law(1.1 * a * 220.0**n, n, 220.0)
-    flux, found = rates(laws)
-    assert 150.0 < flux < 300.0
-    assert found["T0"].value == pytest.approx(a * flux**n)
-    assert found["T0"].std is not None
-    assert found["T2"].std is not None
-    assert found["T0"].std > found["T2"].std  # it is further away
-    odd = odd_one(found)
-    assert odd is not None
-    assert odd.test == "X"
-    assert odd.apart.value == pytest.approx(0.1 * a * flux**n, rel=0.01)
-    assert rates({"T": FuelLaw.absent("no burn")}) == (0.0, {})
 
 
 def test_what_else_sets_it_apart_is_said(tmp_path: Path) -> None:

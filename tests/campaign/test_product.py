@@ -16,7 +16,6 @@ from hfanalysis.campaign.words import agreement, diagnosed
 from hfanalysis.products.campaign import Campaign, Diagnosed, Predicted
 from hfanalysis.products.diagnosis import NamedEffect
 from hfanalysis.record.definition import load_definition
-from hfanalysis.stages.base import silent
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +103,7 @@ def test_what_belongs_to_an_injector_is_not_pooled_over_two_of_them(tmp_path: Pa
         for test, row in made(tmp_path).tests.items()
         if test in "AB"
     }
-    constants = stand_row(rows, tmp_path, None, silent).constants
+    constants = stand_row(rows, tmp_path / "processed").constants
     assert constants["C_i"].to_json() == {"value": None, "reason": "the tests have different injectors"}
     assert constants["m"].mean.value == pytest.approx(1.04)
 

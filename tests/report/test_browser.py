@@ -21,6 +21,7 @@ from tests.report.sample import channel, material
 from tests.report.test_page import hostile
 
 from hfanalysis.campaign.page import page as campaign_page
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Channel
 from hfanalysis.report.compare import compare
 from hfanalysis.report.page import page
@@ -449,6 +450,33 @@ def test_a_campaign_s_page_opens_without_complaint_and_fits_a_narrow_screen(tab:
     assert tab.ask("document.documentElement.scrollWidth") <= 390
     assert tab.ask("document.querySelectorAll('svg.chart circle').length") == 9
     assert tab.ask("document.querySelector('table a').getAttribute('href')") == "A/report.html"
+
+
+def test_a_campaign_s_tables_sort_by_any_column_and_leave_out_tests(tab: Page, tmp_path: Path) -> None:
+    made = campaign(tmp_path)
+    impulses = {"A": 900.0, "B": 11000.0, "C": 2000.0}
+    rows = {
+        test: row.but(performance={"total_impulse": Quantity(impulses[test], "N s", 10.0)}) if test in impulses else row
+        for test, row in made.tests.items()
+    }
+    (tmp_path / "campaign.html").write_text(campaign_page(made.but(tests=rows)), encoding="utf-8")
+    tab.console.clear()
+    tab.open(tmp_path / "campaign.html")
+    left = "[...document.querySelectorAll('#tests tbody tr')].filter((row) => !row.hidden)"
+    names = f"{left}.map((row) => row.cells[0].textContent)"
+    by_impulse = "document.querySelectorAll('#tests th .sort')[5].click()"
+    tab.ask(by_impulse)
+    assert tab.ask(names) == ["A", "C", "B", "D"]
+    tab.ask(by_impulse)
+    assert tab.ask(names) == ["B", "C", "A", "D"]  # what has no number comes last in either direction
+    assert tab.ask("document.querySelector('#tests th[aria-sort]').textContent") == "total impulse"
+    tab.ask("(() => { const f = document.querySelector('.filter input'); f.value = 'heat'; "
+            "f.dispatchEvent(new Event('input')); })()")  # fmt: skip
+    assert tab.ask(names) == ["B", "A"]
+    assert tab.ask("document.querySelector('.filter output').textContent") == "2 of 4"
+    shown = "[...document.querySelectorAll('.stand table.sorts tbody tr')].filter((row) => !row.hidden)"
+    assert set(tab.ask(f"{shown}.map((row) => row.cells[0].textContent)")) == {"A", "B"}
+    assert tab.console == []
 
 
 def test_an_engine_s_page_opens_without_complaint_and_reads_what_lies_along_its_axes(tab: Page, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from benchmarks import joint as study
+from tests.campaign.test_common_law import law
 
 TRUTH = {"0": {"a": 1e-4, "n": 0.5}}
 
@@ -28,7 +29,7 @@ def test_draws_are_of_one_stand_and_have_one_odd_test_at_most() -> None:
         assert [test for test in draw.tests if "x" in test] == ([draw.odd] if draw.odd else [])
     with_odd = [draw for draw in draws if draw.odd]
     assert 100 < len(with_odd) < 200
-    assert all(len(draw.tests) >= study.FROM_FOUR for draw in with_odd)
+    assert not any(len(draw.tests) == 3 for draw in with_odd)
 
 
 def test_what_is_counted() -> None:
@@ -52,3 +53,16 @@ def test_what_is_counted() -> None:
     assert "| 4 to 10 tests of one fuel: one is named | 50 % (1 of 2) |" in told
     assert "| tests of one fuel are said to disagree | 50 % (1 of 2) |" in told
     assert "4 of 5 draws; tests that said nothing of a and n were left out 1 times." in told
+
+
+def test_a_draw_is_judged_by_the_laws_of_its_tests() -> None:
+    """The one of another fuel is named, and a test without a law is left out."""
+    laws = {f"J00{i}": law(150.0 + 30.0 * i) for i in range(5)} | {"J0x1": law(200.0, off=0.2)}
+    draw = study.Draw("D", (*laws, "J009"), "J0x1")
+    judged = study.judge(draw, laws)
+    assert judged["silent"] == ["J009"]
+    assert judged["named"] == judged["odd"] == "J0x1"
+    assert judged["agree"] < 0.01
+    level = study.judge(study.Draw("D", tuple(t for t in laws if t != "J0x1"), None), laws)
+    assert level["n"]["std"] < level["alone"]["J000"]
+    assert "two tests are needed" in study.judge(study.Draw("D", ("J000", "J009"), None), laws)["reason"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,17 @@ from simulated.blind import stand as blind
 from simulated.blind.effects import EFFECTS, Hidden, slots_of
 from simulated.worlds import laws
 from simulated.worlds.engines import ENGINES, drawn, simulated
-from simulated.worlds.loggers import LOGGERS, written
+from simulated.worlds.engines import QUICK as ENGINES_OF_QUICK
+from simulated.worlds.loggers import LOGGERS, filtered, written
+from simulated.worlds.loggers import QUICK as LOGGERS_OF_QUICK
 from simulated.worlds.loggers import drawn as drawn_sensors
 from simulated.worlds.plan import KINDS, plan
+from simulated.worlds.write import write_test
+
+from hfanalysis.record.definition import load_definition
 
 SUDDEN = 1e-6
+RATE_OF_RUNS = 1000.0
 SIZES = {laws.TAIL: 0.1, laws.MIXING: 0.3, laws.ZONE_LAG: 0.002, laws.OPENING: 0.03, laws.THRUST_LOSS: 0.01}
 
 
@@ -108,10 +115,30 @@ def test_logs_are_as_their_logger_writes_them(stand: blind.Stand, logger: str) -
 def test_a_third_of_the_plan_hides_nothing_and_all_stands_are_in_it() -> None:
     tests = plan()
     assert [sum(t.kind == kind for t in tests) for kind in KINDS] == [20, 28, 7, 5]
-    assert {t.engine for t in tests} == set(ENGINES)
-    assert {t.logger for t in tests} == set(LOGGERS)
+    assert {t.engine for t in tests} == set(ENGINES_OF_QUICK)
+    assert {t.logger for t in tests} == set(LOGGERS_OF_QUICK)
     assert not {t.seed for t in tests} & {t.seed for t in plan("development", 200)}
     assert tests == plan()
+    wide = plan("calibration", 120)
+    assert {t.engine for t in wide} == set(ENGINES)
+    assert {t.logger for t in wide} == set(LOGGERS)
+
+
+def test_a_stand_that_lacks_a_sensor_has_no_such_channel(tmp_path: Path) -> None:
+    (one,) = [t for t in plan("calibration", 120) if t.logger == "500 Hz, no thrust" and t.kind == "none"][:1]
+    write_test(one, tmp_path)
+    stated = load_definition(tmp_path / "raw_tests" / one.id / "test.toml")
+    assert set(stated.channels) == {"p_tank", "p_run", "p_chamber", "p_purge", "m_tank"}
+    assert not any("thrust" in exclusion.channels for exclusion in stated.exclude)
+    assert "Thrust" not in (tmp_path / "raw_tests" / one.id / "log.csv").read_text(encoding="utf-8").splitlines()[0]
+
+
+def test_a_filter_leaves_what_is_slow_and_takes_what_is_fast() -> None:
+    time = np.arange(2000) / RATE_OF_RUNS
+    slow, fast = (np.sin(2.0 * np.pi * f * time)[:, None] for f in (1.0, 300.0))
+    assert np.abs(filtered(slow, 60.0) - slow)[200:].max() < 0.05
+    assert np.abs(filtered(fast, 60.0))[200:].max() < 0.25
+    assert filtered(fast, 0.0) is fast
 
 
 def case(kind: str, hidden: tuple[str, ...], verdict: str, named: dict[str, float], unknown: float = 0.0) -> Scored:

@@ -90,7 +90,7 @@ def test_all_that_a_stage_loads_and_opens_is_in_its_key(made: Path, used: dict[s
 def test_what_stages_open_was_seen(used: dict[str, set[Path]]) -> None:
     """The proof above proves nothing of data files that its hook overlooks."""
     seen = {path.relative_to(PACKAGE).as_posix() for path in used["report"]}
-    assert {"charts/style.css", "report/templates/page.html.j2", "report/script/8-start.js"} <= seen
+    assert {"charts/style.css", "report/templates/page.html.j2", "report/script/9-start.js"} <= seen
     assert PACKAGE / "diagnose" / "answer" / "probabilities.json" in used["diagnose"]
     assert PACKAGE / "record" / "readers" / "delimited.py" in used["ingest"]
 

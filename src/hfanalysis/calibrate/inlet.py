@@ -127,24 +127,30 @@ def inlet_of(
 
 
 def _states(feed: Feed, saturation: Saturation, bias: Mapping[str, float]) -> Inlet:
-    found = feed.inlet(saturation)
-    rows = {"subcooling": (found.subcooling, "K"), "quality": (found.quality, ""), "density": (found.density, "kg/m^3")}
-    return Inlet(**{name: _mean(feed, saturation, bias, name, *row) for name, row in rows.items()})
+    units = {"subcooling": "K", "quality": "", "density": "kg/m^3", "back_pressure": ""}
+    return Inlet(**{name: _mean(feed, saturation, bias, name, unit) for name, unit in units.items()})
 
 
-def _mean(
-    feed: Feed, saturation: Saturation, bias: Mapping[str, float], name: str, course: Array, unit: str
-) -> Quantity:
+def _course(feed: Feed, saturation: Saturation, name: str) -> Array:
+    if name == "back_pressure":
+        return feed.chamber / feed.run
+    return np.asarray(getattr(feed.inlet(saturation), name))
+
+
+def _mean(feed: Feed, saturation: Saturation, bias: Mapping[str, float], name: str, unit: str) -> Quantity:
     """Of a course over the liquid phase, once the line is full, with its range."""
+    course = _course(feed, saturation, name)
     seen = course[feed.full & np.isfinite(course)]
     if not seen.size:
         return Quantity.absent("no sample between t_feed and t_v has pressures of saturated nitrous oxide")
 
     def of(other: Feed, table: Saturation) -> float:
-        return float(np.nanmean(getattr(other.inlet(table), name)[feed.full]))
+        return float(np.nanmean(_course(other, table, name)[feed.full]))
 
     value, std = float(seen.mean()), _spread(feed, saturation, bias, of)
-    why = f"mean from t_feed to t_v, {seen.min():.3g} to {seen.max():.3g}; isenthalpic from the tank's liquid to p_run"
+    why = f"mean from t_feed to t_v, {seen.min():.3g} to {seen.max():.3g}"
+    if name != "back_pressure":
+        why += "; isenthalpic from the tank's liquid to p_run"
     low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
     return Quantity(value, unit, std, (max(low, 0.0) if name == "quality" else low, high), verdict=DERIVED, why=why)
 

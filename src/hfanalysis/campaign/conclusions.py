@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
 
-from hfanalysis.campaign.pooling import DISAGREE
-from hfanalysis.campaign.sensors import drifting
-from hfanalysis.products.campaign import CommonLaw, EffectRow, Odd, SensorRow, StandRow, TestRow, Together
+from hfanalysis.campaign.pooling import DISAGREE, pooled
+from hfanalysis.campaign.sensors import courses, drifts
+from hfanalysis.campaign.trends import STEADY
+from hfanalysis.campaign.words import NAMED, tests_named
+from hfanalysis.products.campaign import (
+    CommonLaw,
+    Course,
+    EffectRow,
+    Odd,
+    SensorRow,
+    StandRow,
+    TestRow,
+    Together,
+    Trend,
+)
 from hfanalysis.quantity import NORMAL_95, Quantity
 from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report.names import called
@@ -31,6 +43,7 @@ def conclusions(stand: StandRow, tests: Mapping[str, TestRow]) -> list[str]:
         *_constants(stand.constants, rows),
         *_odd_ones(stand),
         *_with_holes(rows),
+        *_trends(stand.trends),
         *_effects(stand.effects, stand.tests),
         *_sensors(stand.sensors),
     ]
@@ -110,7 +123,7 @@ def _with_holes(rows: Mapping[str, TestRow]) -> Iterator[str]:
     few, many = (known[test][1] for test in (in_order[0], in_order[-1]))
     rising, falling = values == sorted(values), values == sorted(values, reverse=True)
     if not _beyond_chance(few, many):
-        yield f"Injectors of other hole areas have the same C_i: {listed(in_order)}."
+        yield f"Injectors of other hole areas have the same C_i: {tests_named(in_order, len(rows))}."
     elif rising or falling:
         word = "rises" if rising else "falls"
         yield f"C_i {word} with the area of the holes: it is no property of the hole."
@@ -126,8 +139,10 @@ def _beyond_chance(one: Quantity, other: Quantity) -> bool:
 def _effects(effects: Mapping[str, EffectRow], tests: tuple[str, ...]) -> Iterator[str]:
     for name, effect in effects.items():
         others = [test for test in tests if test not in effect.named_in]
-        where = listed(list(effect.named_in))
-        if others:
+        where = tests_named(effect.named_in, len(tests))
+        if len(effect.named_in) > NAMED or len(others) > NAMED:
+            yield f"{_capital(called(name))} is named in {where}."
+        elif others:
             yield f"{_capital(called(name))} is named in {where}, and not in {listed(others)}."
         else:
             yield f"{_capital(called(name))} is named in {'both' if len(tests) == 2 else 'all'} tests."
@@ -145,16 +160,40 @@ def _larger(name: str, parameter: str, found: Mapping[str, Quantity]) -> Iterato
         yield f"{_capital(name)}: its {parameter.replace('_', ' ')} in {high} is {times}; look at what changed."
 
 
+def _trends(found: Sequence[Trend]) -> Iterator[str]:
+    """Which constant goes with which condition; where one is steady enough."""
+    for one in found:
+        if one.probability >= STEADY:
+            continue
+        word = "rises" if (one.slope.value or 0.0) > 0.0 else "falls"
+        chance = "less than 0.001" if one.probability < 1e-3 else f"{one.probability:.2g}"
+        yield (
+            f"{one.of} {word} with the {in_words(one.over)} over {len(one.tests)} tests (by chance: {chance}), "
+            "or a pressure's sensor moves both."
+        )
+
+
 def _sensors(sensors: Mapping[str, SensorRow]) -> Iterator[str]:
-    """Which sensor's zero drifts, and in which tests it was off."""
-    for name in drifting(sensors):
-        row = sensors[name]
-        (first, low), *_, (last, high) = row.zeros.items()
-        ends = f"from {_zero(low)} in {first} to {_zero(high)} in {last}"
-        yield f"The zero of {_sensor(name, row)} drifts, {ends}: have it checked."
-    for name, row in sensors.items():
-        for test in row.left:
-            yield f"The zero of {_sensor(name, row)} was off in {test}: {_zero(row.zeros[test])}."
+    """Which sensor's zero or gain drifts, in which tests it was off, and whose gain is none."""
+    for name, what, course in courses(sensors):
+        whose = f"The {what} of {_sensor(name, sensors[name])}"
+        if drifts(course):
+            (first, low), *_, (last, high) = course.by_test.items()
+            yield f"{whose} drifts, from {_number(low)} in {first} to {_number(high)} in {last}: have it checked."
+        for test in course.left:
+            yield f"{whose} was off in {test}: {_number(course.by_test[test])}."
+        if what == "gain":
+            yield from _half(whose, course)
+
+
+def _half(whose: str, course: Course) -> Iterator[str]:
+    """That a cell shows another load than the one stated, test for test."""
+    together = pooled(course.by_test)
+    if together is not None and together.mean.interval is not None:
+        low, high = together.mean.interval
+        if not low <= 1.0 <= high:
+            off = said(together.mean.value or 0.0, "", ".3g")
+            yield f"{whose} is {off} ({low:.3g} to {high:.3g}): it shows another load than the one stated."
 
 
 def _sensor(name: str, row: SensorRow) -> str:
@@ -162,7 +201,7 @@ def _sensor(name: str, row: SensorRow) -> str:
     return words if name == row.channel else f"{name} ({words})"
 
 
-def _zero(found: Quantity) -> str:
+def _number(found: Quantity) -> str:
     return str(said(found.value or 0.0, "bar" if found.unit == "Pa" else found.unit, ".3g"))
 
 

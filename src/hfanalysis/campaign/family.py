@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import exp, hypot, log, sqrt
+from math import hypot, sqrt
 from statistics import median
 
 from scipy.special import chdtrc, ndtr, stdtr
 
 from hfanalysis.campaign.pooling import DISAGREE
-from hfanalysis.products.calibration import FuelLaw
 from hfanalysis.products.campaign import Odd
 from hfanalysis.quantity import Quantity
 
@@ -84,41 +83,25 @@ def _against(test: str, found: Mapping[str, tuple[float, float]]) -> _Apart:
     return _Apart(value - mean, std, mean, min(1.0, len(found) * beyond))
 
 
-def rates(laws: Mapping[str, FuelLaw]) -> tuple[float, dict[str, Quantity]]:
-    """The regression rate [m/s] of each test at one flux [kg/(m^2 s)], the mean of those at which each is known best: a
-    and n of one test trade against each other, and the rate there does not."""
-    known = {
-        test: law
-        for test, law in laws.items()
-        if law.regression.reference_flux is not None
-        and law.regression.reference_flux.value
-        and law.regression_rate_reference.value
-        and law.regression_rate_reference.std
-        and law.n.value is not None
-    }
-    if not known:
-        return 0.0, {}
-    references = {test: float(law.regression.reference_flux.value) for test, law in known.items()}  # type: ignore[union-attr,arg-type]
-    flux = exp(sum(map(log, references.values())) / len(references))
-    out = {}
-    for test, law in known.items():
-        rate, std = float(law.regression_rate_reference.value or 0.0), float(law.regression_rate_reference.std or 0.0)
-        away = log(flux / references[test])
-        there = rate * exp(float(law.n.value or 0.0) * away)
-        out[test] = Quantity(there, "m/s", there * hypot(std / rate, away * (law.n.std or 0.0)))
-    return flux, out
+def natural_limits(in_order: Sequence[float]) -> tuple[float, float] | None:
+    """Between which the numbers of tests, in the order of their dates, lie naturally; None where they are too few to
+    have such limits, or where most of them are equal: then a step of the converter is no limit.
+
+    >>> low, high = natural_limits([1.0, 1.1, 0.9, 1.0, 1.1, 1.0, 0.9, 2.0])
+    >>> round(low, 2), round(high, 2)
+    (0.58, 1.42)
+    """
+    if len(in_order) < FAMILY:
+        return None
+    half, middle = NATURAL * median(abs(b - a) for a, b in pairwise(in_order)), median(in_order)
+    return (middle - half, middle + half) if half > 0.0 else None
 
 
 def left_the_family(in_order: Sequence[float]) -> list[int]:
-    """Which of the numbers of tests, in the order of their dates, lie beyond the natural limits of all of them; none
-    where they are too few to have such limits, or where most of them are equal: then a step of the converter is no
-    limit.
+    """Which of the numbers of tests, in the order of their dates, lie beyond the natural limits of all of them.
 
     >>> left_the_family([1.0, 1.1, 0.9, 1.0, 1.1, 1.0, 0.9, 2.0])
     [7]
     """
-    if len(in_order) < FAMILY:
-        return []
-    half = NATURAL * median(abs(b - a) for a, b in pairwise(in_order))
-    middle = median(in_order)
-    return [i for i, value in enumerate(in_order) if abs(value - middle) > half > 0.0]
+    limits = natural_limits(in_order)
+    return [i for i, value in enumerate(in_order) if limits and not limits[0] <= value <= limits[1]]

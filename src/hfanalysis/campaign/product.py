@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TypeVar
 
-from hfanalysis.campaign.family import left_the_family, odd_one
+from hfanalysis.campaign.common_law import common_law
+from hfanalysis.campaign.family import left_the_family, natural_limits, odd_one
 from hfanalysis.campaign.pooling import pooled
-from hfanalysis.campaign.regression import regression_of
-from hfanalysis.campaign.sensors import sensors_of, zeros_of
+from hfanalysis.campaign.regression import law_in
+from hfanalysis.campaign.sensors import readings_of, sensors_of
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.special import special
+from hfanalysis.campaign.trends import CONSTANTS, trends
 from hfanalysis.errors import AbsentError
 from hfanalysis.interface.ending import ABSENT, DONE, INPUT_AT_FAULT
 from hfanalysis.products.calibration import Calibration
@@ -32,16 +34,12 @@ from hfanalysis.products.flight import Flight
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.model import Product
 from hfanalysis.products.validation import Validation
-from hfanalysis.progress import Progress
 from hfanalysis.quantity import IDENTIFIED, Quantity
 from hfanalysis.record.definition import TestDefinition
 
 P = TypeVar("P", bound=Product)
 
-HARDWARE = ("C_i", "K_loss", "m")
-"""Calibrated numbers that belong to the stand and not to the load of a test."""
-
-CALIBRATED = (*HARDWARE, "a", "n")
+CALIBRATED = (*CONSTANTS, "a", "n")
 MEASURED = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust")
 
 STATUS = {DONE: "done", INPUT_AT_FAULT: "input at fault", ABSENT: "not in the log"}
@@ -72,8 +70,20 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> Tes
         apogee=flight.apogee if flight else None,
         diagnosis=_diagnosed(diagnosis) if diagnosis else None,
         page=f"{folder.name}/report.html" if counts and (folder / "report.html").exists() else None,
-        zeros=zeros_of(definition, ingest) if definition is not None and ingest is not None else {},
+        sensors=readings_of(definition, ingest, calibration) if definition is not None else {},
+        conditions=_conditions(calibration) if calibration is not None else {},
     )
+
+
+def _conditions(calibration: Calibration) -> dict[str, Quantity]:
+    """What a constant of the injector may go with."""
+    inlet, rest = calibration.inlet, calibration.rest
+    found = {
+        "subcooling": inlet.subcooling if inlet else None,
+        "back_pressure": inlet.back_pressure if inlet else None,
+        "tank_temperature": rest.temperature if rest else None,
+    }
+    return {name: quantity for name, quantity in found.items() if quantity is not None and quantity.value is not None}
 
 
 def stand_of(definition: TestDefinition) -> str | None:
@@ -105,17 +115,18 @@ def _diagnosed(product: Diagnosis) -> Diagnosed:
     return Diagnosed(**{name: getattr(product, name) for name in kept})
 
 
-def stand_row(rows: Mapping[str, TestRow], root: Path, out: Path | None, progress: Progress) -> StandRow:
-    """What the tests of one stand, by name, say together."""
-    law = _regression(rows, root, out, progress)
+def stand_row(rows: Mapping[str, TestRow], folder: Path) -> StandRow:
+    """What the tests of one stand, by name, say together; below ``folder`` are their products."""
+    law = _regression(rows, folder)
     if isinstance(law, CommonLaw) and law.odd is not None:
         law = law.but(odd=law.odd.but(special=tuple(special(law.odd.test, rows))))
     return StandRow(
         tests=tuple(rows),
-        constants={name: _constant(rows, name) for name in HARDWARE},
+        constants={name: _constant(rows, name) for name in CONSTANTS},
         effects=_effects(rows),
         regression=law,
         sensors=sensors_of(rows),
+        trends=trends(rows, {name: _calibrated(rows, name) for name in CONSTANTS}),
     )
 
 
@@ -125,10 +136,11 @@ def _constant(rows: Mapping[str, TestRow], name: str) -> Together:
     found = _calibrated(rows, name)
     together = _together(found, "identified")
     odd, in_order = odd_one(found), sorted(found, key=lambda test: (rows[test].date or "", test))
-    beyond = left_the_family([found[test].value or 0.0 for test in in_order])
+    values = [found[test].value or 0.0 for test in in_order]
     return together.but(
         odd=None if odd is None else odd.but(special=tuple(special(odd.test, rows))),
-        left=tuple(in_order[i] for i in beyond),
+        left=tuple(in_order[i] for i in left_the_family(values)),
+        limits=natural_limits(values),
     )
 
 
@@ -188,12 +200,13 @@ def _parameters(found: Mapping[str, Mapping[str, Quantity]]) -> dict[str, Parame
     return dict(zip(names, together, strict=True))
 
 
-def _regression(rows: Mapping[str, TestRow], root: Path, out: Path | None, progress: Progress) -> CommonLaw | NoLaw:
+def _regression(rows: Mapping[str, TestRow], folder: Path) -> CommonLaw | NoLaw:
     """a and n of one law for all tests that say something of them; else the reason."""
     able = [test for test, row in rows.items() if "a" in row.calibration and row.calibration["a"].value is not None]
     if len(able) < 2:
         return NoLaw(reason=f"two tests are needed, and a and n are known of {len(able) or 'none'}")
+    found = {test: _read(Calibration, folder / test) for test in able}
     try:
-        return regression_of(able, root, out, progress)
+        return common_law({test: law_in(calibration) for test, calibration in found.items() if calibration})
     except AbsentError as error:
         return NoLaw(reason=str(error))

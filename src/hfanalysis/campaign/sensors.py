@@ -1,69 +1,80 @@
-"""The zeros of a stand's sensors from test to test: which one drifts, and in which test one was off."""
+"""The sensors of a stand from test to test: whose zero or gain drifts, and in which test one was off."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-
-from scipy.stats import kendalltau
+from math import hypot
 
 from hfanalysis.campaign.family import left_the_family
-from hfanalysis.products.campaign import SensorRow, TestRow, Zero
+from hfanalysis.campaign.trends import STEADY, by_chance
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.campaign import Course, Reading, SensorRow, TestRow
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 
-FEWEST = 5
-"""Tests from which on a zero can be seen to drift. Source: of four in a row one order in twelve is a steady one."""
-
-DRIFTS = 0.02
-"""Probability of so steady a change by chance below which a zero drifts. Source: five that only rise or fall are one in
-sixty."""
+CELL = "m_tank"
 
 
-def zeros_of(definition: TestDefinition, ingest: Ingest) -> dict[str, Zero]:
-    """The zeros [SI] that were taken in a test, by channel, with the serial numbers that are stated."""
-    return {
-        name: Zero(
-            sensor=spec.sensor if (spec := definition.channels.get(name)) is not None else None,
-            value=Quantity(found.zero, found.unit, found.zero_std),
-        )
-        for name, found in ingest.channels.items()
+def readings_of(
+    definition: TestDefinition, ingest: Ingest | None, calibration: Calibration | None
+) -> dict[str, Reading]:
+    """What a test says of its sensors, by channel, with the serial numbers that are stated: zeros [SI] that were taken,
+    and the gain [-] of the tank's cell where the load is stated."""
+    zeros = {
+        name: Quantity(found.zero, found.unit, found.zero_std)
+        for name, found in (ingest.channels if ingest else {}).items()
         if found.zero_std is not None
     }
+    gain = _gain(definition, calibration)
+    serial = {name: spec.sensor for name, spec in definition.channels.items()}
+    return {
+        name: Reading(sensor=serial.get(name), zero=zeros.get(name), gain=gain if name == CELL else None)
+        for name in dict.fromkeys([*zeros, *([CELL] if gain else [])])
+    }
+
+
+def _gain(definition: TestDefinition, calibration: Calibration | None) -> Quantity | None:
+    """The load that the tank's cell showed at rest over the one that was stated."""
+    stated = definition.tank.oxidizer_mass if definition.tank else None
+    cell = calibration.rest.load_cell_mass if calibration and calibration.rest else None
+    if stated is None or cell is None or not cell.value or not cell.std:
+        return None
+    gain = cell.value / stated.value
+    by_load = definition.known_std("tank.oxidizer_mass") / stated.value
+    return Quantity(gain, "", gain * hypot(cell.std / cell.value, by_load))
 
 
 def sensors_of(rows: Mapping[str, TestRow]) -> dict[str, SensorRow]:
     """The sensors of a stand's tests that were in two of them at least; another serial number is another sensor."""
-    by_sensor: dict[str, list[tuple[str, str, Quantity]]] = {}
+    by_sensor: dict[str, dict[str, tuple[str, Reading]]] = {}
     for test in sorted(rows, key=lambda test: (rows[test].date or "", test)):
-        for channel, zero in rows[test].zeros.items():
-            by_sensor.setdefault(zero.sensor or channel, []).append((test, channel, zero.value))
+        for channel, reading in rows[test].sensors.items():
+            by_sensor.setdefault(reading.sensor or channel, {})[test] = (channel, reading)
     return {sensor: _row(found) for sensor, found in sorted(by_sensor.items()) if len(found) > 1}
 
 
-def _row(found: list[tuple[str, str, Quantity]]) -> SensorRow:
-    values = [quantity.value or 0.0 for *_, quantity in found]
-    beyond = left_the_family(values)
-    return SensorRow(
-        channel=found[-1][1],
-        zeros={test: quantity for test, _, quantity in found},
-        drifts=drift(values),
-        left=tuple(found[i][0] for i in beyond),
-    )
+def _row(found: Mapping[str, tuple[str, Reading]]) -> SensorRow:
+    zeros = {test: reading.zero for test, (_, reading) in found.items() if reading.zero}
+    gains = {test: reading.gain for test, (_, reading) in found.items() if reading.gain}
+    channel = list(found.values())[-1][0]
+    return SensorRow(channel=channel, zero=_course(zeros), gain=_course(gains))
 
 
-def drift(in_order: list[float]) -> float | None:
-    """Probability [-] that numbers in a random order rise or fall as steadily (Kendall, Biometrika 30, 1938, 81); None
-    for too few of them, or where all are the same.
-
-    >>> round(drift([1.0, 1.2, 1.3, 1.7, 2.0]), 3), drift([1.0, 2.0])
-    (0.017, None)
-    """
-    if len(in_order) < FEWEST or len(set(in_order)) < FEWEST:
+def _course(by_test: dict[str, Quantity]) -> Course | None:
+    if len(by_test) < 2:
         return None
-    return float(kendalltau(range(len(in_order)), in_order).pvalue)
+    tests, values = list(by_test), [quantity.value or 0.0 for quantity in by_test.values()]
+    beyond = tuple(tests[i] for i in left_the_family(values))
+    return Course(by_test=by_test, drifts=by_chance(range(len(values)), values), left=beyond)
 
 
-def drifting(sensors: Mapping[str, SensorRow]) -> Iterator[str]:
-    """The sensors whose zero drifts."""
-    yield from (name for name, row in sensors.items() if row.drifts is not None and row.drifts < DRIFTS)
+def courses(sensors: Mapping[str, SensorRow]) -> Iterator[tuple[str, str, Course]]:
+    """Every course of the sensors, with the sensor's name and with what it is of, "zero" or "gain"."""
+    for name, row in sensors.items():
+        yield from ((name, what, found) for what in ("zero", "gain") if (found := getattr(row, what)) is not None)
+
+
+def drifts(course: Course) -> bool:
+    """Whether a number rises or falls too steadily for chance."""
+    return course.drifts is not None and course.drifts < STEADY

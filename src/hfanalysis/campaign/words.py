@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from hfanalysis.campaign.pooling import DISAGREE
 from hfanalysis.products.campaign import CommonLaw, Diagnosed, NoLaw, Together
 from hfanalysis.report.names import called
@@ -9,6 +11,18 @@ from hfanalysis.wording.numbers import listed, shown
 
 HIDDEN = 0.01
 """Probability below which its number is not given."""
+
+NAMED = 6
+"""Tests that a sentence names; of more it says how many they are. Source: by choice, what is read at a glance."""
+
+
+def tests_named(tests: Collection[str], of: int) -> str:
+    """Tests by name, or how many of how many they are.
+
+    >>> tests_named(("A", "B"), 3), tests_named([f"T{i}" for i in range(40)], 50)
+    ('A and B', '40 of 50 tests')
+    """
+    return listed(list(tests)) if len(tests) <= NAMED else f"{len(tests)} of {of} tests"
 
 
 def agreement(together: Together | CommonLaw) -> str:
@@ -43,4 +57,5 @@ def regression_sentence(product: CommonLaw | NoLaw) -> str:
         return f"No common regression law: {product.reason}."
     a, n = map(shown, (product.a, product.n))
     law = f"a = ({a.value} ± {a.std}) {a.unit}, n = {n.value} ± {n.std}"
-    return f"One regression law for {listed(list(product.tests))}: {law}. The tests {agreement(product)}."
+    of = tests_named(product.tests, len(product.tests)).replace(f"{len(product.tests)} of ", "all ")
+    return f"One regression law for {of}: {law}. The tests {agreement(product)}."

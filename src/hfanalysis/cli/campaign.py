@@ -61,7 +61,7 @@ def campaign(request: CampaignRequest) -> int:
         rows = {test: row_of(definitions.get(test), folder / test, ended[test]) for test in sorted(tests)}
         stands = dict.fromkeys(row.stand for row in rows.values() if row.stand)
         by_stand = {stand: {test: row for test, row in rows.items() if row.stand == stand} for stand in stands}
-        said = {stand: stand_row(own, request.root, request.out, progress) for stand, own in by_stand.items()}
+        said = {stand: stand_row(own, folder) for stand, own in by_stand.items()}
         predictions = record(request.root, ended, request.out, progress)
         product = Campaign(tests=rows, stands=said, predictions=predictions)
     folder.mkdir(parents=True, exist_ok=True)

@@ -15,6 +15,8 @@ from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.source_places import likeliest_place, places
 from hfanalysis.diagnose.answer.too_small import with_parts, without_small_sources, without_the_small
+from hfanalysis.diagnose.answer.tried_on import conditions_of, tried_on
+from hfanalysis.diagnose.answer.tried_on import rows as rows_tried
 from hfanalysis.diagnose.answer.verdict import Verdict, effects_in, effects_product, upper_limits, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import story
@@ -49,6 +51,7 @@ from hfanalysis.products.diagnosis import (
     Place,
     Plausibility,
     Tried,
+    TriedOn,
 )
 from hfanalysis.progress import Progress, silent
 from hfanalysis.quantity import Quantity
@@ -94,6 +97,7 @@ def diagnose(
         gap=_with_calibrated(product.gap, found, hypothesis, subject),
         constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
         too_small=small,
+        tried_on=one.tried,
         not_learnt=unknown.reason,
     )
     sentences = story(product)
@@ -113,6 +117,7 @@ class _Judged:
     verdict: Verdict
     rows: tuple[Place, ...]
     small: Mapping[str, float]
+    tried: TriedOn | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -124,10 +129,12 @@ def _judged(subject: Subject, effects: Mapping[str, Effect], progress: Progress,
     hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = without_small_sources(name_effects(hypothesis, observed, catalogue, progress, settings))
-    verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
+    tried = tried_on(conditions_of(subject, observed), rows_tried())
+    twins = {name: effect.twins for name, effect in catalogue.effects.items()}
+    verdict = verdict_of(found, twins, tried.misled if tried else 0.0)
     rows = sized_places(verdict, found)
     verdict, small = without_the_small(verdict, rows, found)
-    return _Judged(hypothesis, catalogue, found, verdict, rows, small)
+    return _Judged(hypothesis, catalogue, found, verdict, rows, small, tried)
 
 
 def _fade(one: _Judged, effects: Mapping[str, Effect]) -> Place | None:

@@ -28,6 +28,7 @@ CALIBRATION = {
     "subcooling": ("p_tank", "p_run"),
     "quality": ("p_tank", "p_run"),
     "density": ("p_tank", "p_run"),
+    "back_pressure": ("p_chamber", "p_run"),
     "drift": PRESSURES,
     "m": PRESSURES,
     "m_choked": PRESSURES,

@@ -42,6 +42,7 @@ class Inlet(Part):
     subcooling: Annotated[Quantity, Is("of saturation at p_run less that of the tank; negative: it flashes", "K")]
     quality: Annotated[Quantity, Is("vapor by mass, isenthalpic from the tank's liquid", "")]
     density: Annotated[Quantity, Is("of the mixture", "kg/m^3")]
+    back_pressure: Annotated[Quantity | None, Is("p_c over p_run", "")] = None
 
 
 class TankHistory(Part):

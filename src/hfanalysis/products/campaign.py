@@ -23,20 +23,38 @@ class Diagnosed(Part):
     partners: Annotated[Sizes, Is("probability of each further effect if the first is there", "")]
 
 
-class Zero(Part):
-    """The zero of a channel in a test."""
+class Reading(Part):
+    """What a test says of a sensor."""
 
     sensor: Annotated[str | None, Is("its serial number, as stated")]
-    value: Annotated[Quantity, Is("what was taken off as its zero", "of the channel")]
+    zero: Annotated[Quantity | None, Is("what was taken off as its zero", "of the channel")] = None
+    gain: Annotated[Quantity | None, Is("of the tank's cell: load that it showed over the one stated", "")] = None
+
+
+class Course(Part):
+    """A number from test to test, in the order of their dates."""
+
+    by_test: Annotated[dict[str, Quantity], Is("the number", "of the number")]
+    drifts: Annotated[float | None, Is("probability of so steady a change by chance, of five at least", "")]
+    left: Annotated[tuple[str, ...], Is("tests beyond the natural limits of all in order, of eight at least")]
 
 
 class SensorRow(Part):
-    """A sensor in the tests of a stand, in the order of their dates."""
+    """A sensor in the tests of a stand."""
 
     channel: Annotated[str, Is("that it is of, in the last of them")]
-    zeros: Annotated[dict[str, Quantity], Is("what was taken off as its zero, by test", "of the channel")]
-    drifts: Annotated[float | None, Is("probability of so steady a change of the zero by chance, of five at least", "")]
-    left: Annotated[tuple[str, ...], Is("tests beyond the natural limits of all in order, of eight at least")]
+    zero: Annotated[Course | None, Is("what was taken off as its zero")] = None
+    gain: Annotated[Course | None, Is("of the tank's cell: load that it showed over the one stated")] = None
+
+
+class Trend(Part):
+    """Whether a constant goes with a condition of the tests."""
+
+    of: Annotated[str, Is("the constant")]
+    over: Annotated[str, Is("the condition: subcooling, back_pressure, tank_temperature")]
+    tests: Annotated[tuple[str, ...], Is("in which both are known, of one injector where the constant is C_i")]
+    slope: Annotated[Quantity, Is("median of the slopes between two tests", "of both")]
+    probability: Annotated[float, Is("of so steady a trend by chance, as many as were looked for", "")]
 
 
 class TestRow(Part):
@@ -54,7 +72,10 @@ class TestRow(Part):
     apogee: Annotated[Quantity | None, Is("predicted, above ground", "m")]
     diagnosis: Annotated[Diagnosed | None, Is("in short")]
     page: Annotated[str | None, Is("where its page is")]
-    zeros: Annotated[Mapping[str, Zero], Is("by channel, where one was taken")] = {}
+    sensors: Annotated[Mapping[str, Reading], Is("by channel, where the test says something of its sensor")] = {}
+    conditions: Annotated[
+        Mapping[str, Quantity], Is("in the liquid phase: subcooling, back_pressure, tank_temperature")
+    ] = {}
 
 
 class Agreement(Part):
@@ -83,6 +104,7 @@ class Together(Part):
     tests: Annotated[tuple[str, ...], Is("in it: those that identify the number")] = ()
     odd: Annotated[Odd | None, Is("the one that does not fit the rest, of four at least")] = None
     left: Annotated[tuple[str, ...], Is("those beyond the natural limits of all in order, of eight at least")] = ()
+    limits: Annotated[tuple[float, float] | None, Is("natural limits of all in order", "of the mean")] = None
 
     @model_validator(mode="before")
     @classmethod
@@ -151,6 +173,7 @@ class StandRow(Part):
     effects: Annotated[dict[str, EffectRow], Is("that some test names")]
     regression: Annotated[CommonLaw | NoLaw, Is("the law of all its tests, or the reason why there is none")]
     sensors: Annotated[Mapping[str, SensorRow], Is("by serial number, or by channel where none is stated")] = {}
+    trends: Annotated[tuple[Trend, ...], Is("of constants with conditions, as far as they were looked for")] = ()
 
 
 class Predicted(Part):

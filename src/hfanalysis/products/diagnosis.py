@@ -207,6 +207,22 @@ class Compared(Part):
     abrupt_end: Annotated[Quantity | None, Is("time in which the chamber empties without fuel", "s")] = None
 
 
+class TriedOn(Part):
+    """How the test was taken, and what became of the diagnosis on simulated tests that it was tried on."""
+
+    rate: Annotated[float, Is("samples of a channel", "1/s")]
+    rest: Annotated[float, Is("before the opening", "s")]
+    noise: Annotated[float, Is("of a mean, over the channel's largest value", "")]
+    load: Annotated[float, Is("oxidizer", "kg")]
+    like: Annotated[int, Is("simulated tests most like this one", "")]
+    sure: Annotated[int, Is("statements at 0.9 or more in these", "")]
+    right: Annotated[int, Is("statements of those that were right", "")]
+    outside: Annotated[tuple[Words, ...], Is("in what this test is outside of all that were tried")] = ()
+    misled: Annotated[float, Is(
+        "of a test outside: share of sure statements that were wrong in the world where that was worst; counted in", ""
+    )] = 0.0  # fmt: skip
+
+
 WITHOUT_NAME = {"none": "nothing", "unknown": "something without a name"}
 """What people call the two answers that are no effect."""
 
@@ -261,6 +277,7 @@ class Diagnosis(Product):
         "what each governing equation lacks over time, by the channels alone"
     )] = {}  # fmt: skip
     compared: Annotated[Compared, Is("with what")]
+    tried_on: Annotated[TriedOn | None, Is("how far the answer can be believed on such a stand")] = None
     probabilities_from: Annotated[str | None, Is("what made evidences probabilities")] = None
     notes: Notes
     warnings: Warnings

@@ -169,8 +169,13 @@ def verdict(text: str) -> Markup:
     return badge.format(kind, MARKS[kind], text)
 
 
-def table(name: str, caption: str | Markup, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Markup:
-    """A table that scrolls by itself where it is too wide; a column whose head starts with ">" is aligned right."""
+def table(
+    name: str, caption: str | Markup, columns: Sequence[str], rows: Iterable[Sequence[Any]], sorts: bool = False
+) -> Markup:
+    """A table that scrolls by itself where it is too wide; a column whose head starts with ">" is aligned right.
+
+    ``sorts``: the reader puts its rows in the order of any column, by :func:`sorted_by` where a cell has it.
+    """
     right = [column.startswith(">") for column in columns]
     heads = Markup().join(
         Markup('<th scope="col"{}>{}</th>').format(_right(is_right), column.lstrip(">"))
@@ -178,10 +183,15 @@ def table(name: str, caption: str | Markup, columns: Sequence[str], rows: Iterab
     )
     body = Markup("\n").join(_row(row, right) for row in rows)
     frame = Markup(
-        '<div class="scroll" tabindex="0" role="region" aria-label="{}: table"><table>'
+        '<div class="scroll" tabindex="0" role="region" aria-label="{}: table"><table{}>'
         "<caption><span>{}</span></caption><thead><tr>{}</tr></thead><tbody>\n{}\n</tbody></table></div>"
     )
-    return frame.format(name, caption, heads, body)
+    return frame.format(name, Markup(' class="sorts"') if sorts else Markup(), caption, heads, body)
+
+
+def sorted_by(number: float, shown: Markup) -> Markup:
+    """What is ``shown`` in a cell, with the number by which its column is sorted."""
+    return Markup('<span data-by="{}">{}</span>').format(f"{number:.8g}", shown)
 
 
 def _row(cells: Sequence[Any], right: Sequence[bool]) -> Markup:

@@ -19,6 +19,7 @@ NAMES: dict[str, str] = {
     "subcooling": "subcooling at the injector",
     "quality": "vapor by mass at the injector",
     "density": "density at the injector",
+    "back_pressure": "pressure behind the injector over that before it",
     "spi": "C_d, incompressible mixture",
     "hem": "C_d, homogeneous equilibrium",
     "dyer": "C_d, mean of both (Dyer)",

@@ -32,6 +32,7 @@ from hfanalysis.diagnose.answer.standing import (
     left_by_laws,
     withheld,
 )
+from hfanalysis.diagnose.answer.tried_on import mixed
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_source, near
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
@@ -89,12 +90,13 @@ class Verdict:
 NO_TWINS: Mapping[str, tuple[str, ...]] = {}
 
 
-def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS) -> Verdict:
+def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS, misled: float = 0.0) -> Verdict:
     """Probabilities, and what they amount to.
 
-    ``twins``: by name, those that the channels hardly tell from it. Evidence counts as far as held-out data bear it out
-    (:func:`hfanalysis.diagnose.answer.borne_out.borne_out`); what a name does not keep, for its size or for what its
-    model misses, is unknown.
+    ``twins``: by name, those that the channels hardly tell from it. ``misled``: share [-] of tests such as this one in
+    which evidence misleads, beyond that of the tests by which probabilities were fitted. Evidence counts as far as
+    held-out data bear it out (:func:`hfanalysis.diagnose.answer.borne_out.borne_out`); what a name does not keep, for
+    its size or for what its model misses, is unknown.
     """
     weighed = replace(
         found,
@@ -107,6 +109,7 @@ def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS) -
     posterior = scale().probabilities(evidences, found.named.leftover, apart)
     heat = scale().heat(found.named.leftover)
     posterior = among_twins(beside_a_curve(posterior, evidences, apart, heat), evidences, of_all, twins, heat)
+    posterior = mixed(posterior, misled)
     plain = _verdict(weighed, posterior, evidences, twins)
     if plain.label in ("none", "unknown"):
         return replace(plain, elsewhere=apart, held_out=weighed.held_out)

@@ -98,7 +98,13 @@ _UNITS = {"Pa": "bar", "W": "kW", "kg/s": "g/s", "1": "%"}
 
 def story(product: Diagnosis) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [*headlines(product), *doubts_sentences(product), *poor_fit_sentence(product), *equation_sentence(product)]
+    out = [
+        *headlines(product),
+        *tried_sentences(product),
+        *doubts_sentences(product),
+        *poor_fit_sentence(product),
+        *equation_sentence(product),
+    ]
     out += [place_sentence(row, product.compared.end) for row in product.localisation]
     out += [line for row in product.effects for line in effect_sentences(row, product)]
     out += fade_sentence(product.compared)
@@ -112,6 +118,25 @@ def story(product: Diagnosis) -> list[str]:
         out += [f"It is not {name}." for name in not_it(product)]
     out += [f"What would decide: {text}." for text in product.decisive_measurements]
     return out
+
+
+def tried_sentences(product: Diagnosis) -> list[str]:
+    """How far the answer can be believed on such a stand."""
+    found = product.tried_on
+    if found is None:
+        return []
+    if found.outside:
+        return [
+            f"This test is outside of the simulated ones on which the diagnosis was tried: {'; '.join(found.outside)}.",
+            f"So every probability counts that in the worst of those worlds {100.0 * found.misled:.0f} % of sure "
+            "statements were wrong.",
+        ]
+    if product.verdict == "none" or not found.sure:
+        return []
+    return [
+        f"Of {found.sure} statements at {SET:g} or more on the {found.like} simulated tests most like this one "
+        f"{found.right} were right."
+    ]
 
 
 def learnt_sentences(product: Diagnosis) -> list[str]:

@@ -59,6 +59,7 @@ function start() {
     if (known[figure.dataset.chart]) startChart(figure, known[figure.dataset.chart]);
   }
   startFolds();
+  startTables();
   if (!charts.length) return;
   drawAll();
   document.getElementById("reset-zoom")?.addEventListener("click", lookAtAll);

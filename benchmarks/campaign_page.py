@@ -1,0 +1,108 @@
+"""The page of a campaign of a thousand tests: how soon it is made and open in Chromium, sorted and filtered.
+
+python -m benchmarks.campaign_page [--tests 1000] [--own 8]
+
+``--own`` tests are generated (HF5 at 20 Hz, each with noise of its own) and calibrated; the others are these under
+other names, each with constants off by chance, on three stands.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from datetime import date, timedelta
+from pathlib import Path
+
+import numpy as np
+from benchmarks.archive import generate
+from benchmarks.studies import one_thread
+from tests.report.browser import CHROMIUM, browser
+
+STANDS = 3
+
+
+def main() -> int:
+    """Make it, open it, and use it."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--tests", type=int, default=1000)
+    parser.add_argument("--own", type=int, default=8)
+    asked = parser.parse_args()
+    one_thread()
+
+    from hfanalysis.campaign.page import page
+    from hfanalysis.campaign.product import row_of, stand_row
+    from hfanalysis.campaign.side_by_side import Ended
+    from hfanalysis.products.campaign import Campaign, TestRow
+    from hfanalysis.quantity import Quantity
+    from hfanalysis.stages.open_test import open_test
+    from hfanalysis.stages.runner import run_to
+
+    rng = np.random.default_rng(57)
+
+    def off(quantity: Quantity) -> Quantity:
+        if quantity.value is None or not quantity.std:
+            return quantity
+        return replace(quantity, value=quantity.value + quantity.std * float(rng.standard_normal()))
+
+    def another(row: TestRow, number: int) -> TestRow:
+        numbers = {"calibration": row.calibration, "performance": row.performance}
+        moved = {what: {name: off(quantity) for name, quantity in found.items()} for what, found in numbers.items()}
+        return row.but(date=str(date(2026, 1, 1) + timedelta(days=number)), stand=f"stand {number % STANDS}", **moved)
+
+    with tempfile.TemporaryDirectory() as scratch:
+        root, own = Path(scratch), [f"G{i:03d}" for i in range(asked.own)]
+        for seed, name in enumerate(own):
+            generate(root, name, seed)
+            run_to("validate", open_test(root, name))
+            print(f"\r{seed + 1} of {asked.own} tests generated", end="", file=sys.stderr)
+        folder = root / "processed"
+        made = [row_of(open_test(root, name).definition, folder / name, Ended(0, "")) for name in own]
+        rows = {f"T{i:04d}": another(made[i % len(made)], i) for i in range(asked.tests)}
+        for i, name in enumerate(rows):
+            (folder / name).symlink_to(folder / own[i % len(own)])
+        begun = time.perf_counter()
+        by_stand = {f"stand {i}": {t: r for t, r in rows.items() if r.stand == f"stand {i}"} for i in range(STANDS)}
+        said = {stand: stand_row(of, folder) for stand, of in by_stand.items() if of}
+        text = page(Campaign(tests=rows, stands=said))
+        took = time.perf_counter() - begun
+        print(f"\n{asked.tests} tests of {STANDS} stands: {len(text) / 1e6:.1f} MB, made in {took:.1f} s")
+        path = root / "campaign.html"
+        path.write_text(text, encoding="utf-8")
+        if CHROMIUM is None:
+            print("no Chromium: the page was not opened")
+            return 0
+        with browser(root / "profile") as tab:
+            begun = time.perf_counter()
+            tab.open(path)
+            opened = time.perf_counter() - begun
+            spent = {what: tab.ask(TIMED.format(do=do)) for what, do in USED.items()}
+            used = ", ".join(f"{what} in {1e3 * seconds:.0f} ms" for what, seconds in spent.items())
+            print(f"open and drawn in {opened:.2f} s; {used}")
+            if tab.console:
+                raise SystemExit(f"the page complains: {tab.console}")
+    return 0
+
+
+TIMED = """(async () => {{
+  const begun = performance.now();
+  {do}
+  await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  return (performance.now() - begun) / 1000;
+}})()"""
+"""Seconds until what was done is drawn."""
+
+USED = {
+    "sorted by impulse": "document.querySelectorAll('#tests th .sort')[5].click();",
+    "sorted by name": "document.querySelectorAll('#tests th .sort')[0].click();",
+    "filtered": (
+        "const field = document.querySelector('.filter input'); field.value = 'T0123';"
+        " field.dispatchEvent(new Event('input'));"
+    ),
+}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

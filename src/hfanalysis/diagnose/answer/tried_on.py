@@ -1,0 +1,166 @@
+"""How a test compares with the simulated ones on which the diagnosis was tried, and what that says of its answer.
+
+The rows of worlds.json are tests of the set ``calibration`` of docs/worlds-quick.md, which no constant of the diagnosis
+comes of: under which conditions each was taken, what was stated of it most surely, and whether that was right.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+from math import log
+
+import numpy as np
+
+from hfanalysis.diagnose.answer.posterior import BEFORE, SET, kind
+from hfanalysis.inference.gap import noise_of
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.subject import Subject
+from hfanalysis.products.diagnosis import TriedOn
+from hfanalysis.wording.numbers import listed
+
+CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "p_purge", "m_tank")
+"""Those that tests of worlds have."""
+
+NEAREST = 30
+"""Tests that count as like one. Source: choice; of about a dozen statements one more or less that is wrong is 8 %."""
+
+BEYOND = 1.5
+"""Times the least or the largest value of a condition beyond which a test is outside of what was tried. Source: choice,
+half more."""
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """How a test was taken: samples per second, seconds of rest before the opening, noise of block means over a
+    channel's largest value [-] and oxidizer loaded [kg]; and ``lacks``, channels that were not compared."""
+
+    rate: float
+    rest: float
+    noise: float
+    load: float
+    lacks: tuple[str, ...] = ()
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Those that are numbers."""
+        return {name: getattr(self, name) for name in WORDS}
+
+    def far(self, other: Conditions, scales: Mapping[str, float]) -> float:
+        """How unlike two tests are [-]: 1 for the whole range of a condition, or for a channel that one of them
+        lacks."""
+        apart = sum((log(x / other.numbers[n]) / scales[n]) ** 2 for n, x in self.numbers.items())
+        return float(apart + len(set(self.lacks) ^ set(other.lacks)))
+
+
+WORDS = {
+    "rate": ("samples a second", "", ".3g"),
+    "rest": ("of rest", "s", ".2g"),
+    "noise": ("of noise in a mean", "%", ".2g"),
+    "load": ("of oxidizer", "kg", ".2g"),
+}
+"""Conditions in words, their units and how they are written."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A simulated test: its ``world``, how it was taken, the probability of what was stated of it most surely, and
+    whether all that was stated at SET or more was right."""
+
+    world: str
+    conditions: Conditions
+    stated: float
+    right: bool
+
+
+@lru_cache
+def rows() -> tuple[Row, ...]:
+    """All of them; none where there is no file yet."""
+    source = files("hfanalysis.diagnose.answer") / "worlds.json"
+    if not source.is_file():
+        return ()
+    found = json.loads(source.read_text(encoding="utf-8"))["tests"]
+    return tuple(
+        Row(r["world"], Conditions(**{n: r[n] for n in WORDS}, lacks=tuple(r["lacks"])), r["stated"], r["right"])
+        for r in found
+    )
+
+
+def conditions_of(subject: Subject, observed: Observed) -> Conditions | None:
+    """How a test was taken; None where that cannot be told."""
+    calibration, origin = subject.calibration, subject.segments.t_open.value
+    times = [subject.log[name].time for name in observed.names if name in subject.log]
+    if calibration is None or origin is None or not times or not (calibration.oxidizer_mass.value or 0.0) > 0.0:
+        return None
+    largest = {channel.name: float(np.abs(channel.value).max()) for channel in observed.channels}
+    noise = [std / largest[name] for name, std in noise_of(observed).items() if largest[name] > 0.0]
+    found = Conditions(
+        rate=float(np.median([1.0 / np.median(np.diff(time)) for time in times])),
+        rest=float(max(origin - time[0] for time in times)),
+        noise=float(np.median(noise)),
+        load=calibration.oxidizer_mass.value or 0.0,
+        lacks=tuple(name for name in CHANNELS if name not in observed.names),
+    )
+    return found if all(x > 0.0 and np.isfinite(x) for x in found.numbers.values()) else None
+
+
+def tried_on(conditions: Conditions | None, known: Sequence[Row]) -> TriedOn | None:
+    """What was found on tests like one, whether it is outside of all that was tried, and how often a sure statement
+    was wrong in the world where that was most often so; None where its conditions are not known."""
+    if conditions is None:
+        return None
+    if not known:
+        return _told(conditions)
+    ranges = {name: [row.conditions.numbers[name] for row in known] for name in WORDS}
+    scales = {name: max(log(max(all_of) / min(all_of)), 1e-9) for name, all_of in ranges.items()}
+    near = sorted(known, key=lambda row: row.conditions.far(conditions, scales))[:NEAREST]
+    sure = [row for row in near if row.stated >= SET]
+    beyond = tuple(
+        _beyond(name, conditions.numbers[name], min(all_of), max(all_of))
+        for name, all_of in ranges.items()
+        if not min(all_of) / BEYOND <= conditions.numbers[name] <= BEYOND * max(all_of)
+    )
+    lacks = {row.conditions.lacks for row in known}
+    if not any(set(conditions.lacks) <= set(own) for own in lacks):
+        beyond = (*beyond, f"none without {listed(list(conditions.lacks))} was tried")
+    return _told(conditions).but(
+        like=len(near), sure=len(sure), right=sum(row.right for row in sure),
+        outside=beyond, misled=_worst(known) if beyond else 0.0,
+    )  # fmt: skip
+
+
+def _told(own: Conditions) -> TriedOn:
+    """How a test was taken, and nothing that it is compared with."""
+    return TriedOn(rate=own.rate, rest=own.rest, noise=own.noise, load=own.load, like=0, sure=0, right=0)
+
+
+def _beyond(name: str, value: float, low: float, high: float) -> str:
+    words, unit, form = WORDS[name]
+    own, least, most = (f"{(100.0 if unit == '%' else 1.0) * x:{form}}" for x in (value, low, high))
+    return f"{own}{f' {unit}' if unit else ''} {words}, tried with {least} to {most}"
+
+
+def _worst(known: Sequence[Row]) -> float:
+    """Share [-] of sure statements that were wrong in the world in which that is largest; of few, counted with one
+    right and one wrong one more (Laplace)."""
+    shares = []
+    for world in {row.world for row in known}:
+        sure = [row for row in known if row.world == world and row.stated >= SET]
+        shares.append((sum(not row.right for row in sure) + 1.0) / (len(sure) + 2.0))
+    return max(shares)
+
+
+def mixed(posterior: Mapping[str, float], misled: float) -> dict[str, float]:
+    """The probabilities where evidence misleads in a share ``misled`` [-] of tests: there they are those that labels
+    have before a test.
+
+    >>> mixed({"none": 0.0, "a": 1.0, "unknown": 0.0}, 0.2)
+    {'none': 0.05, 'a': 0.92, 'unknown': 0.03}
+    """
+    names = max(sum(kind(label) == "named" for label in posterior), 1)
+    before = {label: BEFORE[kind(label)] / (names if kind(label) == "named" else 1) for label in posterior}
+    total = sum(before.values())
+    return {k: round((1.0 - misled) * p + misled * before[k] / total, 12) for k, p in posterior.items()}
