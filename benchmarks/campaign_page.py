@@ -1,6 +1,6 @@
 """The page of a campaign of a thousand tests: how soon it is made and open in Chromium, sorted and filtered.
 
-python -m benchmarks.campaign_page [--tests 1000] [--own 8]
+python -m benchmarks.campaign_page [--tests 1000] [--own 8] [--out FILE]
 
 ``--own`` tests are generated (HF5 at 20 Hz, each with noise of its own) and calibrated; the others are these under
 other names, each with constants off by chance, on three stands.
@@ -29,6 +29,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tests", type=int, default=1000)
     parser.add_argument("--own", type=int, default=8)
+    parser.add_argument("--out", type=Path, help="where the page is kept")
     asked = parser.parse_args()
     one_thread()
 
@@ -45,7 +46,9 @@ def main() -> int:
     def off(quantity: Quantity) -> Quantity:
         if quantity.value is None or not quantity.std:
             return quantity
-        return replace(quantity, value=quantity.value + quantity.std * float(rng.standard_normal()))
+        by = quantity.std * float(rng.standard_normal())
+        low, high = quantity.interval or (quantity.value, quantity.value)
+        return replace(quantity, value=quantity.value + by, ci95=(low + by, high + by))
 
     def another(row: TestRow, number: int) -> TestRow:
         numbers = {"calibration": row.calibration, "performance": row.performance}
@@ -69,7 +72,7 @@ def main() -> int:
         text = page(Campaign(tests=rows, stands=said))
         took = time.perf_counter() - begun
         print(f"\n{asked.tests} tests of {STANDS} stands: {len(text) / 1e6:.1f} MB, made in {took:.1f} s")
-        path = root / "campaign.html"
+        path = (asked.out or root / "campaign.html").resolve()
         path.write_text(text, encoding="utf-8")
         if CHROMIUM is None:
             print("no Chromium: the page was not opened")

@@ -26,6 +26,7 @@ from benchmarks.studies import one_thread, percent, put
 ROOT = Path(__file__).resolve().parent.parent
 STANDS, ALIKE, OTHER, FASTER = 6, 20, 6, 1.1
 SEED = 9_000_000
+LOGGER = "250 Hz, quiet, a minute of rest"
 SIZES = (2, 10)
 FROM_FOUR = 4
 """Tests of a draw from which on one can be odd."""
@@ -55,14 +56,14 @@ def write_stand(name: str, work: Any) -> None:
     number = int(name)
     rng = np.random.default_rng(SEED + number)
     plain = laws.World(np.zeros(laws.LAWS), "coolprop", (0.0, 0.0)).fading(0.01, 0.01)
-    engine, logger = list(engines.ENGINES)[number % 4], loggers.LOGGERS["250 Hz, quiet, a minute of rest"]
+    engine, logger = engines.QUICK[number % 4], loggers.LOGGERS[LOGGER]
     end = ("late", "left", "early")[number % 3]
     first = engines.drawn(rng, engine, end, plain)
     for other in (False, True):
         for test in names(number, other):
             own = another(rng, first, end, plain, {"C_i": 0.01, "regression rate": 0.0})
             stand = replace(own, a=own.a * (FASTER if other else 1.0))
-            case = Case(test, "joint", (), 0.0, logger.name, number, number, stand=f"joint {number}")
+            case = Case(test, "joint", (), 0.0, LOGGER, number, number, stand=f"joint {number}")
             made = fired(rng, case, stand, plain, (), logger, loggers.drawn(rng, logger, stand))
             put(made, {"id": test, "truth": constants(stand)}, work.root)
 

@@ -133,7 +133,7 @@ def _states(feed: Feed, saturation: Saturation, bias: Mapping[str, float]) -> In
 
 def _course(feed: Feed, saturation: Saturation, name: str) -> Array:
     if name == "back_pressure":
-        return feed.chamber / feed.run
+        return np.where(feed.run > 0.0, feed.chamber / np.where(feed.run > 0.0, feed.run, 1.0), np.nan)
     return np.asarray(getattr(feed.inlet(saturation), name))
 
 

@@ -9,7 +9,7 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from hfanalysis.campaign.skill import skill_sentence
-from hfanalysis.campaign.stand_page import cell, parts_of
+from hfanalysis.campaign.stand_page import NOTHING, cell, parts_of
 from hfanalysis.campaign.words import diagnosed
 from hfanalysis.products.campaign import Campaign, Predicted, TestRow
 from hfanalysis.report import html
@@ -35,10 +35,14 @@ def page(product: Campaign) -> str:
 
 
 def _overview(tests: Mapping[str, TestRow]) -> Markup:
+    """A row for each test; a column of which no test has anything is left out."""
     heads = ("burn time", "total impulse", "specific impulse", "peak p_c", "apogee")
     columns = ("test", "date", "stand", "kind", *(f">{head}" for head in heads), "what the model lacks")
+    rows = [_test(test, row) for test, row in tests.items()]
+    kept = [i for i, _ in enumerate(columns) if any(row[i] != NOTHING for row in rows)]
     caption = "Measured performance, the apogee predicted with it, and what the diagnosis found."
-    return html.table("Tests", caption, columns, [_test(test, row) for test, row in tests.items()], sorts=True)
+    shown = [[row[i] for i in kept] for row in rows]
+    return html.table("Tests", caption, [columns[i] for i in kept], shown, sorts=True)
 
 
 def _predictions(found: Mapping[str, Predicted]) -> Markup:
@@ -70,4 +74,4 @@ def _test(test: str, row: TestRow) -> tuple[Any, ...]:
     numbers = [cell(name, row.performance.get(name)) for name in _NUMBERS]
     kind = KINDS.get(row.kind or "", row.kind or "–")
     lacks = diagnosed(row.diagnosis)
-    return (name, row.date or "–", row.stand or "–", kind, *numbers, cell("apogee", row.apogee), lacks)
+    return (name, row.date or NOTHING, row.stand or NOTHING, kind, *numbers, cell("apogee", row.apogee), lacks)

@@ -21,6 +21,9 @@ from hfanalysis.wording.numbers import fixed, in_words
 
 LAW = ("a", "n")
 
+NOTHING = Markup("–")
+"""What stands in a cell where nothing is known."""
+
 
 def parts_of(stand: StandRow, tests: Mapping[str, TestRow]) -> Iterator[Markup]:
     """What belongs to the stand: its constants, effects, regression law and sensors; in a table a row is a test."""
@@ -42,7 +45,7 @@ def parts_of(stand: StandRow, tests: Mapping[str, TestRow]) -> Iterator[Markup]:
 def cell(name: str, quantity: Quantity | None) -> Markup:
     """A quantity in a table, with the number by which its column is sorted."""
     if quantity is None or quantity.value is None:
-        return Markup("–")
+        return NOTHING
     return html.sorted_by(quantity.value, html.value(quantity, name))
 
 
@@ -104,7 +107,7 @@ def _of_test(test: str, stand: StandRow) -> Iterator[Markup]:
 
 def _chance(probability: float | None, named: bool) -> Markup:
     if probability is None:
-        return Markup("–")
+        return NOTHING
     text = f"< {HIDDEN}" if probability < HIDDEN else fixed(probability, 2)
     told = Markup("<strong>{}</strong> named").format(text) if named else escape(text)
     return html.sorted_by(probability, told)
