@@ -97,9 +97,11 @@ TIMED = """(async () => {{
 }})()"""
 """Seconds until what was done is drawn."""
 
+HEADS = "[...document.querySelectorAll('#tests th .sort')]"
+
 USED = {
-    "sorted by impulse": "document.querySelectorAll('#tests th .sort')[5].click();",
-    "sorted by name": "document.querySelectorAll('#tests th .sort')[0].click();",
+    "sorted by impulse": HEADS + ".find((head) => head.textContent === 'total impulse').click();",
+    "sorted by name": HEADS + "[0].click();",
     "filtered": (
         "const field = document.querySelector('.filter input'); field.value = 'T0123';"
         " field.dispatchEvent(new Event('input'));"

@@ -11,7 +11,7 @@ from tests.calibrate.engine_sample import TRUTH, engine, evidence, rate
 from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Ports, Scalar, burn_time_of
 from hfanalysis.calibrate.likelihood import effective_samples, surface, weights_from
-from hfanalysis.calibrate.regression import RANGE_N, RANGE_RATE, Fitted, _likeliest, _minimum, fit, fit_together, law_at
+from hfanalysis.calibrate.regression import RANGE_N, RANGE_RATE, Fitted, _likeliest, _minimum, fit, law_at
 from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import AbsentError
@@ -86,18 +86,6 @@ def test_fuel_left_takes_the_place_of_a_burn_time() -> None:
     seen = replace(whole, burn_time=None, fuel_left=Scalar(left, 0.02, "scales"), end=6.0)
     found = fit([seen])
     assert rate(found.law, 200.0) == pytest.approx(rate(TRUTH, 200.0), rel=0.02)
-
-
-def test_tests_of_one_law_agree_and_give_it_together() -> None:
-    tests = [evidence(), evidence(fuel_mass=1.2, oxidizer_mass=8.0)]
-    joint = fit_together(tests, [fit([e]) for e in tests])
-    assert joint.agree
-    assert joint.fitted.law.n == pytest.approx(TRUTH.n, abs=0.02)
-
-
-def test_tests_of_two_laws_disagree() -> None:
-    tests = [evidence(), evidence(Regression(0.8 * TRUTH.a, TRUTH.n))]
-    assert not fit_together(tests, [fit([e]) for e in tests]).agree
 
 
 def test_an_engine_that_cannot_run_says_so() -> None:

@@ -5,22 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.interpolate import RectBivariateSpline
-from scipy.special import chdtrc, stdtrit
+from scipy.special import stdtrit
 
 from hfanalysis.calibrate.likelihood import _cubic
-from hfanalysis.calibrate.regression import by_chance
 from hfanalysis.calibrate.student import limit
 
 
 @pytest.mark.parametrize("freedom", [1.0, 1.37, 2.0, 3.9, 10.0, 57.3, 1000.0])
 def test_the_limit_is_students(freedom: float) -> None:
     assert limit(freedom) == pytest.approx(float(stdtrit(freedom, 0.975)), rel=1e-10)
-
-
-@pytest.mark.parametrize("pairs", [1, 2, 5])
-def test_a_rise_is_as_likely_by_chance_as_chi_square(pairs: int) -> None:
-    for rise in (0.0, 0.3, 4.0, 25.0):
-        assert by_chance(rise, pairs) == pytest.approx(float(chdtrc(2 * pairs, rise)), rel=1e-12)
 
 
 def test_a_surface_is_followed_by_the_bicubic_spline_through_its_nodes() -> None:

@@ -30,8 +30,6 @@ from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
 from hfanalysis.simulation import plots
 from hfanalysis.simulation.foretelling import (
-    PRIOR_FREEDOM,
-    PRIOR_SCATTER,
     QUANTITIES,
     Base,
     changes,
@@ -42,6 +40,7 @@ from hfanalysis.simulation.foretelling import (
     to_mean,
 )
 from hfanalysis.simulation.predict import misses_of, predict, score
+from hfanalysis.simulation.scatter import PRIOR_FREEDOM, PRIOR_SCATTER
 from hfanalysis.units import Value
 
 REPOSITORY = Path(__file__).parents[2]

@@ -14,8 +14,8 @@ from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.products.engines import NextTests
 from hfanalysis.simulation import next_test
-from hfanalysis.simulation.foretelling import PRIOR_SCATTER
 from hfanalysis.simulation.next_test import CHANGES, next_tests
+from hfanalysis.simulation.scatter import PRIOR_SCATTER
 
 LAW = {"names": ["n", "ln_a"], "std": [0.05, 0.25], "correlation": [[1.0, -0.99], [-0.99, 1.0]]}
 

@@ -1,4 +1,4 @@
-"""a and n of a test that has been calibrated, or of several together; a test that tells nothing says why."""
+"""a and n of a test that has been calibrated; a test that tells nothing says why."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hfanalysis.calibrate.evidence_from_log import evidence_of, whole_covariance
 from hfanalysis.calibrate.facts import nothing_to_regress
 from hfanalysis.calibrate.law_errors import LawErrors
 from hfanalysis.calibrate.narrow_port import reaching_the_head, with_stated_tap
-from hfanalysis.calibrate.regression import Fitted, Joint, fit, fit_together
+from hfanalysis.calibrate.regression import Fitted, fit
 from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.calibrate.stated import apart, held_law, law_of
 from hfanalysis.engine.effect import Active
@@ -156,8 +156,3 @@ def contradiction(definition: TestDefinition, found: FuelLaw) -> str | None:
         f"[grain] a and n state a rate of {value * 1e3:.3f} mm/s at {flux.value:.0f} kg/(m^2 s), but the log says "
         f"{rate.value * 1e3:.3f} +/- {(rate.std or 0.0) * 1e3:.3f} mm/s"
     )
-
-
-def regress_together(tests: Sequence[Evidence]) -> Joint:
-    """Common a and n of several tests."""
-    return fit_together(tests, [fit([e]) for e in tests])

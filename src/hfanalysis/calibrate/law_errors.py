@@ -94,7 +94,12 @@ class LawErrors:
         along = {"a": (1.0, -log(flux)), "n": (0.0, 1.0),
                  "regression_rate_reference": (1.0, log(reference.value / flux))}  # fmt: skip
         variances = {name: max(float(np.array(w) @ more @ np.array(w)), 0.0) for name, w in along.items()}
-        return law.but(**{name: _widened(getattr(law, name), v, name != "n") for name, v in variances.items()})
+        known = law.regression.systematic
+        systematic = {name: float(np.hypot(known.get(name, 0.0), np.sqrt(v))) for name, v in variances.items()}
+        return law.but(
+            **{name: _widened(getattr(law, name), v, name != "n") for name, v in variances.items()},
+            regression=law.regression.but(systematic=systematic),
+        )
 
     def _joint(self, by_all: Array, response: Array, more: Array, std: Array) -> Joint:
         """Of what a model takes: NAMES, then n and ln a."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import exp, factorial, log
+from math import exp, log
 from typing import Any
 
 import numpy as np
@@ -49,10 +49,6 @@ RESURVEYS = 3
 intervals."""
 NEGLIGIBLE = 0.05
 """Misfit [-] by which such a point has to be lower."""
-
-TESTS_DISAGREE = 0.01
-"""Probability of the rise in misfit by common constants below which tests are said to disagree. Evidence:
-test_regression.py: tests of one law agree, of two disagree."""
 
 NEAR, EXACT = 1e-4, 1e-7
 """To what ln r and n are found of a minimum that is one of several, and of the one that is told. Evidence: along a
@@ -325,40 +321,3 @@ def slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) -> 
             raise AbsentError("the engine's model cannot be run about the best a and n")
         columns.append((after - before) / (2.0 * step))
     return np.column_stack(columns)
-
-
-@dataclass(frozen=True)
-class Joint:
-    """Constants common to several tests, and whether the tests agree on them."""
-
-    fitted: Fitted
-    probability: float
-
-    @property
-    def agree(self) -> bool:
-        """Whether the misfit rises by common constants no more than chance lets it."""
-        return self.probability >= TESTS_DISAGREE
-
-
-def fit_together(tests: Sequence[Evidence], alone: Sequence[Fitted]) -> Joint:
-    """Common a and n of several tests with the weights that each has alone; 2 (k - 1) constants fewer."""
-    flux = middle_flux(tests[0])
-    evidence = [f.evidence[0] for f in alone]
-    weights = [f.weights[0] for f in alone]
-    start = _scan(evidence, weights, flux)
-    best = _minimum(evidence, weights, flux, start)
-    together = _surveyed(evidence, weights, flux, best)
-    rise = together.misfit - sum(f.misfit for f in alone)
-    return Joint(together, by_chance(rise, len(alone) - 1))
-
-
-def by_chance(rise: float, pairs: int) -> float:
-    """Probability [-] that chance makes a misfit rise by more, by twice ``pairs`` fewer constants.
-
-    That of chi-square with an even number of degrees of freedom (Abramowitz and Stegun, 26.4.5).
-
-    >>> round(by_chance(5.991, 1), 4), round(by_chance(9.488, 2), 4), by_chance(-0.1, 1)
-    (0.05, 0.05, 1.0)
-    """
-    half = 0.5 * max(rise, 0.0)
-    return exp(-half) * sum(half**k / factorial(k) for k in range(pairs))

@@ -22,56 +22,51 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, FuelLaw, RegressionBasis
 from hfanalysis.products.campaign import Agreement, CommonLaw
 from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, Quantity
+from hfanalysis.simulation.scatter import PRIOR_SCATTER, RATE
 
 TOLD = (IDENTIFIED, CONDITIONAL, NOT_IDENTIFIABLE)
 """Verdicts on a and n of laws that count: one that does not tell a and n apart still tells the rate."""
 
 
 @dataclass(frozen=True)
-class _Line:
-    """The least squares of ln r_0 and n: ``best`` (2,), their ``covariance`` (2, 2) with the tests' own deviations, and
-    the weighted sum of squares [-] that is left, of ``freedom`` numbers more than constants."""
+class _Error:
+    """Of a number [-]: the standard deviation that is its ``own``, and the one ``shared`` by all tests of a stand, as
+    that of a hole's area."""
 
-    best: Array
-    covariance: Array
-    misfit: float
-    freedom: int
+    own: float
+    shared: float
+
+    @classmethod
+    def of(cls, quantity: Quantity, systematic: float, scale: float = 1.0) -> _Error:
+        """Of a quantity, by ``scale``, of whose deviation a part is ``systematic`` [-]; both together reach as far as
+        its interval."""
+        low, high = quantity.interval or (0.0, 0.0)
+        std = (quantity.std or 0.0) / scale
+        whole = max(std, 0.5 * (high - low) / NORMAL_95 / scale)
+        own = sqrt(std**2 - min(systematic, 0.999 * std) ** 2)
+        return cls(own, sqrt(max(whole**2 - own**2, 0.0)))
 
     @property
-    def probability(self) -> float:
-        """Of so large a scatter [-] by chance."""
-        return float(chdtrc(self.freedom, self.misfit))
-
-    @property
-    def widening(self) -> float:
-        """By how much a 95 % interval is wider than the tests' own deviations say: where they disagree by Student's,
-        with the scatter that there is."""
-        if self.probability >= DISAGREE:
-            return 1.0
-        return float(stdtrit(self.freedom, 0.975)) / NORMAL_95 * sqrt(self.misfit / self.freedom)
-
-    def along(self, weights: tuple[float, float]) -> tuple[float, float]:
-        """``weights`` times (ln r_0, n) [-], and its standard deviation."""
-        w = np.array(weights)
-        return float(w @ self.best), self.widening * sqrt(float(w @ self.covariance @ w))
+    def whole(self) -> float:
+        """Both."""
+        return hypot(self.own, self.shared)
 
 
 @dataclass(frozen=True)
 class _Known:
-    """What a test tells: ln r [-] at a ``flux`` [kg/m^2/s] and n [-], with their standard deviations, which reach as
-    far as their intervals."""
+    """What a test tells: ln r [-] at a ``flux`` [kg/m^2/s] and n [-], with their errors."""
 
     flux: float
     ln_rate: float
-    ln_rate_std: float
+    of_rate: _Error
     n: float
-    n_std: float
+    of_n: _Error
 
     def at(self, flux: float) -> Quantity:
         """The rate [m/s] at another flux: a and n of one test trade against each other, and the rate there does not."""
         away = log(flux / self.flux)
         rate = exp(self.ln_rate + self.n * away)
-        return Quantity(rate, "m/s", rate * hypot(self.ln_rate_std, away * self.n_std))
+        return Quantity(rate, "m/s", rate * hypot(self.of_rate.own, away * self.of_n.own))
 
 
 def _known(law: FuelLaw) -> _Known | None:
@@ -81,18 +76,55 @@ def _known(law: FuelLaw) -> _Known | None:
         return None
     if not (rate.value and rate.std and n.std and flux.value) or n.value is None:
         return None
-    return _Known(flux.value, log(rate.value), _reaching(rate) / rate.value, n.value, _reaching(n))
-
-
-def _reaching(quantity: Quantity) -> float:
-    """The standard deviation of a quantity, or of a normal one that is as wide as its interval."""
-    low, high = quantity.interval or (0.0, 0.0)
-    return max(quantity.std or 0.0, 0.5 * (high - low) / NORMAL_95)
+    systematic = law.regression.systematic
+    of_rate = _Error.of(rate, systematic.get("regression_rate_reference", 0.0), rate.value)
+    return _Known(flux.value, log(rate.value), of_rate, n.value, _Error.of(n, systematic.get("n", 0.0)))
 
 
 def counts(law: FuelLaw) -> bool:
     """Whether a test's law says something of that of all."""
     return _known(law) is not None
+
+
+@dataclass(frozen=True)
+class _Line:
+    """ln r_0 and n of all tests: ``best`` (2,), their ``covariance`` (2, 2), and the probability [-] of so large a
+    scatter of the tests by chance."""
+
+    best: Array
+    covariance: Array
+    probability: float
+
+    def along(self, weights: tuple[float, float]) -> tuple[float, float]:
+        """``weights`` times (ln r_0, n) [-], and its standard deviation."""
+        w = np.array(weights)
+        return float(w @ self.best), sqrt(float(w @ self.covariance @ w))
+
+
+def _line(tests: Sequence[_Known], flux: float) -> _Line:
+    """Weighted by all of their errors, of which the shared ones do not become less with the number of tests, and are
+    as large as if all were off to the same side. Whether tests agree is asked by their own errors; where they do not,
+    these are as large as the scatter asks for (Student)."""
+    slopes = np.array([row for one in tests for row in ((1.0, log(one.flux / flux)), (0.0, 1.0))])
+    values = np.array([value for one in tests for value in (one.ln_rate, one.n)])
+    errors = [error for one in tests for error in (one.of_rate, one.of_n)]
+    own, shared, whole = (np.array([getattr(e, name) for e in errors]) for name in ("own", "shared", "whole"))
+    left = (values - slopes @ _weighted(slopes, own) @ values) / own
+    freedom = values.size - 2
+    probability = float(chdtrc(freedom, left @ left))
+    if probability < DISAGREE:
+        own = own * float(stdtrit(freedom, 0.975)) / NORMAL_95 * sqrt(left @ left / freedom)
+    taken = _weighted(slopes, whole)
+    of_rates = np.arange(values.size) % 2 == 0
+    together = np.column_stack([taken @ np.where(of_rates, shared, 0.0), taken @ np.where(of_rates, 0.0, shared)])
+    covariance = (taken * own**2) @ taken.T + together @ together.T
+    return _Line(taken @ values, covariance, probability)
+
+
+def _weighted(slopes: Array, std: Array) -> Array:
+    """What takes observations with deviations ``std`` (m,) to the constants of their ``slopes`` (m, 2): (2, m)."""
+    by_std = slopes / std[:, None]
+    return np.asarray(np.linalg.solve(by_std.T @ by_std, by_std.T) / std)
 
 
 def common_law(laws: Mapping[str, FuelLaw]) -> CommonLaw:
@@ -104,30 +136,19 @@ def common_law(laws: Mapping[str, FuelLaw]) -> CommonLaw:
     flux = exp(sum(log(one.flux) for one in known.values()) / len(known))
     line = _line(list(known.values()), flux)
     reference = flux * exp(-line.covariance[0, 1] / line.covariance[1, 1])
-    agree = "agree" if line.probability >= DISAGREE else "disagree: common constants fit worse than chance allows"
     constants = _constants(line, flux, reference, _condition(told))
+    agree = "agree" if line.probability >= DISAGREE else "disagree: common constants fit worse than chance allows"
     return CommonLaw(
         tests=tuple(told),
         a=constants["a"],
         n=constants["n"],
         regression_rate_reference=constants["regression_rate_reference"],
-        regression=RegressionBasis(reference_flux=Quantity(reference, UNIT_OF_FLUX), misfit=line.misfit),
+        regression=RegressionBasis(reference_flux=Quantity(reference, UNIT_OF_FLUX)),
         agreement=Agreement(verdict=agree, probability=line.probability),
-        odd=odd_one({test: one.at(flux) for test, one in known.items()}),
+        odd=odd_one({test: one.at(flux) for test, one in known.items()}, PRIOR_SCATTER[RATE]),
         flux=flux,
         alone=told,
     )
-
-
-def _line(tests: Sequence[_Known], flux: float) -> _Line:
-    slopes = np.array([row for one in tests for row in ((1.0, log(one.flux / flux)), (0.0, 1.0))])
-    values = np.array([value for one in tests for value in (one.ln_rate, one.n)])
-    weights = np.array([1.0 / std for one in tests for std in (one.ln_rate_std, one.n_std)])
-    slopes, values = slopes * weights[:, None], values * weights
-    covariance = np.linalg.inv(slopes.T @ slopes)
-    best = covariance @ slopes.T @ values
-    left = values - slopes @ best
-    return _Line(best, covariance, float(left @ left), values.size - 2)
 
 
 def _constants(line: _Line, flux: float, reference: float, condition: str) -> dict[str, Quantity]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import hypot, sqrt
+from math import exp, hypot, log, sqrt
 from statistics import median
 
 from scipy.special import chdtrc, ndtr, stdtr
@@ -13,6 +13,7 @@ from scipy.special import chdtrc, ndtr, stdtr
 from hfanalysis.campaign.pooling import DISAGREE
 from hfanalysis.products.campaign import Odd
 from hfanalysis.quantity import Quantity
+from hfanalysis.simulation.scatter import scatter_among
 
 FEWEST = 4
 """Tests from which on one can be odd. Source: of two it is open which one it is, and of three the other two are no
@@ -29,13 +30,15 @@ two ranges of so few; with its usual 3.1 one family of eight in eight has a test
 twenty, and no more of larger ones (tests/campaign/test_family.py)."""
 
 
-def odd_one(found: Mapping[str, Quantity]) -> Odd | None:
+def odd_one(found: Mapping[str, Quantity], usual: float | None = None) -> Odd | None:
     """The test whose number differs from that of the rest by more than chance allows, where there is just one.
 
-    Each is compared with the mean of the others, with its own deviation and that of the mean; where the others
-    disagree among themselves, by their scatter (Student). The probability counts that any of them could have been it.
-    Of four that all differ by far more than they state one set in four has three that happen to agree, and names the
-    fourth; of seven hardly any does.
+    Each is compared with the mean of the others. Where it is known how far tests of a stand differ at large (``usual``,
+    relative [-]), by that and what the others show of it: most of what is not known of a number, as of a hole's area,
+    is the same in all tests of a stand, and no reason for one to differ. Else with its own deviation and that of the
+    mean; where the others disagree among themselves, by their scatter (Student). The probability counts that any of
+    them could have been it. Of four that all differ by far more than they state one set in four has three that happen
+    to agree, and names the fourth; of seven hardly any does.
 
     >>> level = {f"T{i}": Quantity(1.0 + 0.01 * i, "", 0.02) for i in range(5)}
     >>> odd_one(level) is None, odd_one({**level, "X": Quantity(1.2, "", 0.02)}).test
@@ -44,12 +47,17 @@ def odd_one(found: Mapping[str, Quantity]) -> Odd | None:
     usable = {test: (float(q.value), float(q.std)) for test, q in found.items() if q.value is not None and q.std}
     if len(usable) < FEWEST:
         return None
-    apart = {test: _against(test, usable) for test in usable}
+
+    def against(test: str, others: Mapping[str, tuple[float, float]]) -> _Apart:
+        by_scatter = usual is not None and all(value > 0.0 for value, _ in others.values())
+        return _by_scatter(test, others, usual or 0.0) if by_scatter else _against(test, others)
+
+    apart = {test: against(test, usable) for test in usable}
     first, second, *_ = sorted(apart, key=lambda test: apart[test].probability)
     if apart[first].probability >= CHANCE:
         return None
     rest = {test: both for test, both in usable.items() if test != first}
-    if len(rest) >= FEWEST and _against(second, rest).probability < CHANCE:
+    if len(rest) >= FEWEST and against(second, rest).probability < CHANCE:
         return None  # more than one: then it is no odd one but tests that differ
     unit = next(iter(found.values())).unit
     one = apart[first]
@@ -81,6 +89,22 @@ def _against(test: str, found: Mapping[str, tuple[float, float]]) -> _Apart:
     else:
         beyond = 2.0 * float(ndtr(-abs(value - mean) / std))
     return _Apart(value - mean, std, mean, min(1.0, len(found) * beyond))
+
+
+def _by_scatter(test: str, found: Mapping[str, tuple[float, float]], usual: float) -> _Apart:
+    """By how far the others differ and tests of a stand differ at large. Of a deviation that is larger than the least
+    of all the excess is the test's own."""
+    least = min(std / value for value, std in found.values())
+    own = {name: (std / value) ** 2 - least**2 for name, (value, std) in found.items()}
+    others = [name for name in found if name != test]
+    shown = scatter_among(usual, [log(found[name][0]) for name in others])
+    variance = {name: shown.std**2 + own[name] for name in found}
+    total = sum(1.0 / variance[name] for name in others)
+    mean = exp(sum(log(found[name][0]) / variance[name] for name in others) / total)
+    std = sqrt(variance[test] + 1.0 / total)
+    value = found[test][0]
+    beyond = 2.0 * float(stdtr(shown.freedom, -abs(log(value / mean)) / std))
+    return _Apart(value - mean, std * mean, mean, min(1.0, len(found) * beyond))
 
 
 def natural_limits(in_order: Sequence[float]) -> tuple[float, float] | None:

@@ -36,6 +36,7 @@ from hfanalysis.products.model import Product
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import IDENTIFIED, Quantity
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.simulation.scatter import PRIOR_SCATTER
 
 P = TypeVar("P", bound=Product)
 
@@ -66,6 +67,7 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> Tes
         status=STATUS.get(ended.status, "defect"),
         reason=ended.said or None,
         calibration={name: constants[name] for name in CALIBRATED if name in constants},
+        systematic={name: one.systematic for name, one in calibration.budget.items()} if calibration else {},
         performance={name: measured[name] for name in MEASURED if name in measured},
         apogee=flight.apogee if flight else None,
         diagnosis=_diagnosed(diagnosis) if diagnosis else None,
@@ -134,8 +136,10 @@ def _constant(rows: Mapping[str, TestRow], name: str) -> Together:
     if name == "C_i" and len({row.injector_area for row in rows.values()}) > 1:
         return Together(mean=Quantity.absent("the tests have different injectors"))
     found = _calibrated(rows, name)
-    together = _together(found, "identified")
-    odd, in_order = odd_one(found), sorted(found, key=lambda test: (rows[test].date or "", test))
+    shared = min((rows[test].systematic.get(name, 0.0) for test in found), default=0.0)
+    together = _together(found, "identified", shared)
+    odd = odd_one(found, PRIOR_SCATTER.get(name))
+    in_order = sorted(found, key=lambda test: (rows[test].date or "", test))
     values = [found[test].value or 0.0 for test in in_order]
     return together.but(
         odd=None if odd is None else odd.but(special=tuple(special(odd.test, rows))),
@@ -150,9 +154,10 @@ def _calibrated(rows: Mapping[str, TestRow], name: str) -> dict[str, Quantity]:
     return {test: quantity for test, quantity in found.items() if quantity.verdict == IDENTIFIED}
 
 
-def _together(found: Mapping[str, Quantity], what: str) -> Together:
-    """The mean of the tests in which a number is ``what``, or the reason why there is none."""
-    mean = pooled(found)
+def _together(found: Mapping[str, Quantity], what: str, shared: float = 0.0) -> Together:
+    """The mean of the tests in which a number is ``what``, or the reason why there is none; ``shared``: as
+    :func:`hfanalysis.campaign.pooling.pooled`."""
+    mean = pooled(found, shared)
     if mean is None:
         known = [test for test, q in found.items() if q.std]
         where = f"{known[0]} only" if known else "no test"

@@ -77,6 +77,9 @@ class RegressionBasis(Part):
 
     reference_flux: Annotated[Quantity | None, Is("at which the rate is known best", UNIT_OF_FLUX)] = None
     misfit: Annotated[float | None, Is("weighted sum of squares at the best", "")] = None
+    systematic: Annotated[Mapping[str, float], Is(
+        "standard deviation of n and, relative, of a and of that rate by what would be the same in a repeated test", ""
+    )] = {}  # fmt: skip
     tests: Annotated[tuple[RegressionTest, ...], Is("that it was fitted to")] = ()
 
 

@@ -68,6 +68,9 @@ class TestRow(Part):
     status: Annotated[str, Is("done, input at fault, not in the log, or defect")]
     reason: Annotated[str | None, Is("what was said where it is not done")]
     calibration: Annotated[dict[str, Quantity], Is("constants: C_i, K_loss, m, a, n")]
+    systematic: Annotated[
+        Mapping[str, float], Is("their deviations by what would be the same in a repeated test", "of the constant")
+    ] = {}
     performance: Annotated[dict[str, Quantity], Is("what was measured, as far as it is known")]
     apogee: Annotated[Quantity | None, Is("predicted, above ground", "m")]
     diagnosis: Annotated[Diagnosed | None, Is("in short")]

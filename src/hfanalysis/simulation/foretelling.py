@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import exp, log, sqrt
+from math import exp, log
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,7 @@ from hfanalysis.record.planned import PlannedTest
 from hfanalysis.simulation import flown
 from hfanalysis.simulation.errors import off_by
 from hfanalysis.simulation.of_test import OfTest
+from hfanalysis.simulation.scatter import PRIOR_FREEDOM, PRIOR_SCATTER, RATE, scatter_among
 from hfanalysis.units import Value
 from hfanalysis.validate.model_errors import lower_factor, together
 
@@ -34,17 +35,6 @@ COMMAND = "hfa predict"
 QUANTITIES = {"total_impulse": "N s", "peak_thrust": "N", "peak_chamber_pressure": "Pa", "t_v": "s", "burn_time": "s",
               "apogee": "m"}  # fmt: skip
 """What is predicted, with units."""
-
-RATE = "regression rate"
-"""What scatters beside C_i."""
-
-PRIOR_SCATTER = {"C_i": 0.02, RATE: 0.024}
-"""Relative standard deviation, from one test of a stand to the next, that stands have, as far as their own tests do not
-tell it [-]. Evidence: `python -m benchmarks.prediction --set development --bare`, on simulated stands that predictions
-are not scored on; no test or replica of this package was used for it."""
-
-PRIOR_FREEDOM = 3
-"""Degrees of freedom of that: how many tests it is worth [-]. Evidence: the same."""
 
 OF_THE_FIRED = ("oxidizer_mass", "volume", "fuel_mass")
 """Names of ``joint`` that are of the test that was fired: what the plan states takes their place."""
@@ -161,18 +151,9 @@ def scatter_of(bases: Sequence[Base]) -> dict[str, Scatter]:
     test differs from the mean of them by s sqrt(1 + 1/k), which is what is drawn, with Student's distribution.
     """
     return {
-        name: _scatter(PRIOR_SCATTER[name], values)
+        name: scatter_among(PRIOR_SCATTER[name], values)
         for name, values in logs_of([base.found.calibration for base in bases]).items()
     }
-
-
-def _scatter(prior: float, values: Sequence[float]) -> Scatter:
-    k = len(values)
-    freedom = PRIOR_FREEDOM + k - 1
-    std = sqrt((PRIOR_FREEDOM * prior**2 + float(np.square(np.subtract(values, np.mean(values))).sum())) / freedom)
-    own = f"the {k} tests and " if k > 1 else ""
-    source = f"{own}{100.0 * prior:.1f} % of simulated stands, as if of {PRIOR_FREEDOM} tests"
-    return Scatter(std=std, drawn=std * sqrt(1.0 + 1.0 / k), freedom=freedom, source=source)
 
 
 def logs_of(found: Sequence[Calibration]) -> dict[str, list[float]]:

@@ -23,7 +23,7 @@ from hfanalysis.products.engines import NextTest, NextTests, SensorWorth
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.simulation import flown
 from hfanalysis.simulation.errors import off_by
-from hfanalysis.simulation.foretelling import PRIOR_SCATTER, RATE
+from hfanalysis.simulation.scatter import PRIOR_SCATTER, RATE
 from hfanalysis.simulation.spread import factor_of
 
 COMMAND = "hfa next"
