@@ -15,7 +15,7 @@ from hfanalysis.calibrate.regression import fit
 from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.quantity import CONDITIONAL, DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 
-WINDOW = [(120.0, 500.0)]
+WINDOW = (120.0, 500.0)
 
 
 def at(rate: float, n: float, flux: float = 200.0) -> Regression:
@@ -59,7 +59,7 @@ def test_the_variance_of_n_is_that_of_a_line() -> None:
 
 def test_a_burn_time_on_vapor_that_carries_the_fit_is_a_condition() -> None:
     """The burn ends two seconds after the liquid. Pressures of little noise tell n without it; of much they do not."""
-    fine, rough = (result(fit([evidence(noise=noise, burn_time_std=0.05)])).n for noise in (0.01e5, 0.2e5))
+    fine, rough = (result(fit(evidence(noise=noise, burn_time_std=0.05))).n for noise in (0.01e5, 0.2e5))
     assert fine.verdict == IDENTIFIED
     assert rough.verdict == CONDITIONAL
     assert "the burn time carries the fit" in str(rough.why)
@@ -67,7 +67,7 @@ def test_a_burn_time_on_vapor_that_carries_the_fit_is_a_condition() -> None:
 
 
 def test_a_doubt_of_the_injector_is_worse_than_a_condition() -> None:
-    law = result(fit([replace(evidence(Regression(3.2e-4, 0.3)), burn_time=None)]))
+    law = result(fit(replace(evidence(Regression(3.2e-4, 0.3)), burn_time=None)))
     assert law.n.verdict == CONDITIONAL
     doubted = _conditional(law, Quantity(0.3, "", 0.01, verdict=DOUBTED, why="p_run may be off"))
     assert doubted.n.verdict == DOUBTED

@@ -44,7 +44,7 @@ def information(found: Evidence, flux: float) -> np.ndarray:
 def test_n_and_the_rate_are_known_as_well_as_noise_and_burn_time_let_them() -> None:
     """The bound of Cramer and Rao, by differences of burns about the truth."""
     seen = evidence(noise=NOISE, burn_time_std=BURN_TIME)
-    told = result(fit([seen]))
+    told = result(fit(seen))
     flux = told.regression.reference_flux.value
     least = np.linalg.inv(information(seen, flux))
     quantities = told.quantities

@@ -46,7 +46,7 @@ def test_a_drift_moves_n_by_what_the_law_is_told_for_it() -> None:
     plain = evidence(noise=0.01e5)
     lasts = 6.0
     drifting = plain.moved(by_drift(plain, TRUTH.a, TRUTH.n, 0.02, lasts))
-    before, after = fit([plain]), fit([drifting])
+    before, after = fit(plain), fit(drifting)
     law = result(before)
     wider = LawErrors(before, np.zeros((len(NUISANCES),) * 2)).drifting(law, 0.02, lasts).n
     moved = abs(after.law.n - before.law.n)
@@ -55,7 +55,7 @@ def test_a_drift_moves_n_by_what_the_law_is_told_for_it() -> None:
 
 
 def test_an_n_that_hangs_on_it_is_conditional() -> None:
-    found = fit([evidence(noise=0.01e5)])
+    found = fit(evidence(noise=0.01e5))
     told = LawErrors(found, np.zeros((len(NUISANCES),) * 2)).drifting(result(found), 0.05, 6.0)
     assert told.n.verdict == told.a.verdict == CONDITIONAL
     assert "a C_i that drifts by 5 % while the liquid lasts moves n by" in str(told.n.why)

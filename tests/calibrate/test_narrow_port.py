@@ -50,7 +50,7 @@ def seen() -> Evidence:
 def fitted(at_head: bool) -> Fitted:
     """a and n by the engine whose gauge reads the head, or the nozzle."""
     acting = with_stated_tap(stated("head"), ()) if at_head else ()
-    return fit([replace(seen(), engine=replace(seen().engine, effects=acting))])
+    return fit(replace(seen(), engine=replace(seen().engine, effects=acting)))
 
 
 def law_of(tap: str | None) -> tuple[FuelLaw, FuelLaw]:

@@ -20,19 +20,19 @@ from hfanalysis.errors import AbsentError
 @pytest.fixture(scope="module")
 def clear() -> Fitted:
     """Little noise, a burn time to 50 ms."""
-    return fit([evidence()])
+    return fit(evidence())
 
 
 @pytest.fixture(scope="module")
 def blurred() -> Fitted:
     """Noise of a bar, no burn time."""
-    return fit([replace(evidence(noise=1e5, stop=2.0), burn_time=None)])
+    return fit(replace(evidence(noise=1e5, stop=2.0), burn_time=None))
 
 
 @pytest.mark.parametrize("truth", [TRUTH, Regression(3.2e-4, 0.3), Regression(4e-5, 0.65)])
 def test_the_constants_of_a_burn_are_found(truth: Regression) -> None:
     """From the rough scan of starts, none of which is the answer."""
-    found = fit([evidence(truth)])
+    found = fit(evidence(truth))
     assert found.law.n == pytest.approx(truth.n, abs=0.02)
     assert rate(found.law, 200.0) == pytest.approx(rate(truth, 200.0), rel=0.01)
 
@@ -69,12 +69,12 @@ def test_a_and_n_multiply_to_the_reference_rate(clear: Fitted) -> None:
 
 
 def test_more_noise_widens_the_intervals() -> None:
-    widths = [np.ptp(fit([evidence(noise=n)]).surface.interval(np.array([0.0, 1.0]))) for n in (0.02e5, 0.2e5)]
+    widths = [np.ptp(fit(evidence(noise=n)).surface.interval(np.array([0.0, 1.0]))) for n in (0.02e5, 0.2e5)]
     assert widths[1] > 3.0 * widths[0]
 
 
 def test_what_the_tank_leaves_open_widens_the_rate() -> None:
-    sure, unsure = fit([evidence()]), fit([evidence(nuisance={"area": 0.03 * engine().feed.area})])
+    sure, unsure = fit(evidence()), fit(evidence(nuisance={"area": 0.03 * engine().feed.area}))
     width = [float(np.ptp(f.surface.interval(np.array([1.0, 0.0])))) for f in (sure, unsure)]
     assert width[1] > 1.5 * width[0]
 
@@ -84,7 +84,7 @@ def test_fuel_left_takes_the_place_of_a_burn_time() -> None:
     true = burn(replace(whole.engine, a=TRUTH.a, n=TRUTH.n))
     left = 2.5 - float(np.trapezoid(true.output("fuel_flow") * (true.time < 6.0), true.time))
     seen = replace(whole, burn_time=None, fuel_left=Scalar(left, 0.02, "scales"), end=6.0)
-    found = fit([seen])
+    found = fit(seen)
     assert rate(found.law, 200.0) == pytest.approx(rate(TRUTH, 200.0), rel=0.02)
 
 
@@ -92,7 +92,7 @@ def test_an_engine_that_cannot_run_says_so() -> None:
     broken = evidence()
     broken = replace(broken, engine=replace(broken.engine, exit_area=0.5 * broken.engine.throat_area))
     with pytest.raises(AbsentError, match="cannot be run"):
-        fit([broken])
+        fit(broken)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.5, 0.9])
@@ -201,7 +201,7 @@ def test_a_value_lies_within_its_interval_wherever_the_fit_has_come_to(
 def test_a_rate_that_no_fuel_has_is_not_looked_for() -> None:
     """The fit of a chamber pressure that no engine of this kind has stays among the rates of fuels."""
     sound = evidence()
-    found = result(fit([replace(sound, chamber=0.2 * sound.chamber, burn_time=None)]))
+    found = result(fit(replace(sound, chamber=0.2 * sound.chamber, burn_time=None)))
     low, high = (1e3 * rate for rate in RANGE_RATE)
     rate_found = found.regression_rate_reference
     assert rate_found.value is not None
@@ -228,7 +228,7 @@ def with_ports(test: Evidence, noise: float = 0.0, bias: float = 0.0) -> Evidenc
 
 def test_a_port_measured_while_it_burns_tells_the_law_without_a_burn_time() -> None:
     blind = replace(evidence(noise=0.1e5), burn_time=None)
-    wide, told = fit([blind]), fit([with_ports(blind, 2e-5)])
+    wide, told = fit(blind), fit(with_ports(blind, 2e-5))
     across = np.array([0.0, 1.0])
     assert np.ptp(told.surface.interval(across)) < 0.5 * np.ptp(wide.surface.interval(across))
     assert told.law.n == pytest.approx(TRUTH.n, abs=0.03)
@@ -237,7 +237,7 @@ def test_a_port_measured_while_it_burns_tells_the_law_without_a_burn_time() -> N
 
 def test_a_bias_of_the_port_s_sensor_is_none_of_the_law() -> None:
     blind = replace(evidence(noise=0.1e5), burn_time=None)
-    found = fit([with_ports(blind, 2e-5, bias=4e-4)])
+    found = fit(with_ports(blind, 2e-5, bias=4e-4))
     low, high = found.surface.interval(np.array([0.0, 1.0]))
     assert low < TRUTH.n < high
     assert rate(found.law, 200.0) == pytest.approx(rate(TRUTH, 200.0), rel=0.03)

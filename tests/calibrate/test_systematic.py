@@ -142,7 +142,7 @@ def test_a_scatter_without_a_course_takes_the_errors_of_the_log_so_many_times() 
 
 @cache
 def fitted() -> Fitted:
-    return fit([evidence()])
+    return fit(evidence())
 
 
 def test_a_and_n_follow_what_they_were_fitted_with() -> None:
@@ -152,7 +152,7 @@ def test_a_and_n_follow_what_they_were_fitted_with() -> None:
     errors = LawErrors(found, np.diag(std**2))
     seen = evidence()
     wider = replace(seen.engine.feed, area=seen.engine.feed.area + step)
-    again = fit([replace(seen, engine=replace(seen.engine, feed=wider))])
+    again = fit(replace(seen, engine=replace(seen.engine, feed=wider)))
     moved = np.array([rate_at(again, found.flux) - found.best[0], again.best[1] - found.best[1]])
     response = errors._response[:, NUISANCES.index("area")]
     assert response == pytest.approx(moved, rel=0.2)
@@ -178,7 +178,7 @@ def rate_at(found: Fitted, flux: float) -> float:
 def test_errors_that_the_fit_has_weighed_by_widen_nothing() -> None:
     found = fitted()
     law = result(found)
-    told = LawErrors(found, found.evidence[0].covariance).told(law)
+    told = LawErrors(found, found.evidence.covariance).told(law)
     assert told.quantities == law.quantities
 
 

@@ -5,7 +5,7 @@ None of it makes a law wrong: a fit may be as good as it looks, and the flow or 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from math import sqrt
 
 import numpy as np
@@ -40,27 +40,27 @@ definition: more than half of what is known comes from it."""
 
 
 def conditions(
-    law: Regression, flux: float, windows: Sequence[tuple[float, float]], trickles: Sequence[str] = (),
-    wax: bool = True,
+    law: Regression, flux: float, window: tuple[float, float], trickle: str = "", wax: bool = True
 ) -> Iterator[str]:  # fmt: skip
     """Why a and n hold on a condition, in words, with the source.
 
     Args:
         law: a [SI] and n [-].
         flux: the reference flux [kg/m^2/s], at which the rate is known best.
-        windows: least and largest flux [kg/m^2/s] that were compared, by test.
-        trickles: what :func:`set_by_trickle` says, by test.
+        window: least and largest flux [kg/m^2/s] that were compared.
+        trickle: what :func:`set_by_trickle` says.
         wax: whether the fuel is paraffin, the only one of which laws are compared.
     """
     if wax:
         yield from _beside_paraffin(law, flux)
-    if not any(least <= flux <= most for least, most in windows):
-        least, most = min(w[0] for w in windows), max(w[1] for w in windows)
+    least, most = window
+    if not least <= flux <= most:
         yield (
             f"the rate is known best at a flux of {flux:.0f} kg/(m^2 s), outside the {least:.0f} to {most:.0f} that "
             "were compared"
         )
-    yield from (words for words in trickles if words)
+    if trickle:
+        yield trickle
 
 
 def _beside_paraffin(law: Regression, flux: float) -> Iterator[str]:

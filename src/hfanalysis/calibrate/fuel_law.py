@@ -67,7 +67,7 @@ def _fitted(
 ) -> FuelLaw:
     """As the log has it."""
     try:
-        found = fit([evidence_for(log, segments, definition, calibration, with_stated_tap(definition, effects))])
+        found = fit(evidence_for(log, segments, definition, calibration, with_stated_tap(definition, effects)))
         whole = _with_all_errors(result(found), found, definition, calibration)
         law = reaching_the_head(whole, found, definition)
     except AbsentError as error:
@@ -90,7 +90,7 @@ def _with_all_errors(law: FuelLaw, found: Fitted, definition: TestDefinition, ca
 
 def _drift(found: Fitted, calibration: TankCalibration) -> tuple[float, float]:
     """What C_i may drift by [-] while the liquid lasts, and how long it does [s]."""
-    constants, burnt = calibration.constants, found.evidence[0].burnt(found.law)
+    constants, burnt = calibration.constants, found.evidence.burnt(found.law)
     lasts = float(burnt.liquid_out or burnt.time[-1])
     return drift_std(Course.of(constants.C_i_history), constants.C_i.value or 0.0, lasts), lasts
 

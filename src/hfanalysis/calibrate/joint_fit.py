@@ -248,7 +248,7 @@ class _Constants:
         assert n.ci95 is not None
         along = np.array([1.0, log(flux)])
         spread = float(np.sqrt(along @ self._covariance_of_law @ along))
-        on = conditions(Regression(a.value, n.value), flux, [self._fluxes])
+        on = conditions(Regression(a.value, n.value), flux, self._fluxes)
         verdict, why = conditioned(judge_regression("", n.ci95, n.std or 0.0, flux, spread), n.ci95, on)
         rate, around = a.value * flux**n.value, exp(NORMAL_95 * spread)
         return {

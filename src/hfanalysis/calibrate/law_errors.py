@@ -45,7 +45,7 @@ class LawErrors:
     @cached_property
     def _gain(self) -> Array:
         """Change of (ln r, n) [-] by what was observed [1/Pa, 1/s, 1/kg], (2, observations)."""
-        return np.asarray(self.found.surface.covariance @ self._slopes.T @ self.found.weights[0].precision)
+        return np.asarray(self.found.surface.covariance @ self._slopes.T @ self.found.weights.precision)
 
     def _gain_of(self, weights: Weights) -> Array:
         """The same with the weights that a fit takes which leaves more."""
@@ -55,13 +55,13 @@ class LawErrors:
     @property
     def _response(self) -> Array:
         """Change of (ln r, n) [-] by one deviation of each nuisance, (2, nuisances)."""
-        evidence = self.found.evidence[0]
+        evidence = self.found.evidence
         return -self._gain @ replace(evidence, covariance=self.whole).sensitivities(self.found.law)
 
     def drifting(self, law: FuelLaw, std: float, lasts: float) -> FuelLaw:
         """The ``law`` with what a C_i that drifts by ``std`` [-] over ``lasts`` [s] does to it; on the condition that
         it does not, where n is not known to WIDEST_N otherwise."""
-        best, evidence = self.found.law, self.found.evidence[0]
+        best, evidence = self.found.law, self.found.evidence
         off = by_drift(evidence, best.a, best.n, std, lasts)
         moved = self._gain_of(weighed(evidence.moved(off), best)) @ off
         wider = self._wider(law, np.outer(moved, moved))
@@ -72,7 +72,7 @@ class LawErrors:
         return wider.but(**held)
 
     def _slope(self, axis: Array) -> Array:
-        evidence, best, flux = self.found.evidence[0], self.found.best, self.found.flux
+        evidence, best, flux = self.found.evidence, self.found.best, self.found.flux
         after, before = (evidence.predict(law_at(best + s * axis, flux)) for s in (1.0, -1.0))
         if after is None or before is None:
             raise ArithmeticError("the engine's model cannot be run about the best a and n")
@@ -82,7 +82,7 @@ class LawErrors:
         """The law with wider intervals, and with ``joint``, the errors of all constants together."""
         std = np.sqrt(np.diag(self.whole))
         scale = np.where(std > 0.0, std, 1.0)
-        by_all, by_fit = (c / np.outer(scale, scale) for c in (self.whole, self.found.evidence[0].covariance))
+        by_all, by_fit = (c / np.outer(scale, scale) for c in (self.whole, self.found.evidence.covariance))
         response = self._response
         more = response @ (by_all - by_fit) @ response.T
         return self._wider(law, more).but(joint=self._joint(by_all, response, more, std))

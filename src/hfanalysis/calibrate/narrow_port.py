@@ -94,16 +94,14 @@ def _farthest(values: Sequence[float], value: float) -> float:
 
 def _step(found: Fitted, recovery: float) -> Array | None:
     """By how much (ln r, n) move if the gauge reads the head, the flow widening with this ``recovery`` [-]."""
-    law, information, pull = found.law, np.zeros((2, 2)), np.zeros(2)
-    for evidence, weights in zip(found.evidence, found.weights, strict=True):
-        at_head = replace(evidence, engine=_reading_head(evidence.engine, recovery)).predict(law)
-        plain = evidence.predict(law)
-        if at_head is None or plain is None:
-            return None
-        along = slopes(evidence, found.flux, found.best)
-        information += along.T @ weights.precision @ along
-        pull += along.T @ weights.precision @ (plain - at_head)
-    return np.asarray(np.linalg.solve(information, pull))
+    law, evidence = found.law, found.evidence
+    at_head = replace(evidence, engine=_reading_head(evidence.engine, recovery)).predict(law)
+    plain = evidence.predict(law)
+    if at_head is None or plain is None:
+        return None
+    along = slopes(evidence, found.flux, found.best)
+    weighted = along.T @ found.weights.precision
+    return np.asarray(np.linalg.solve(weighted @ along, weighted @ (plain - at_head)))
 
 
 def _reading_head(engine: Engine, recovery: float) -> Engine:

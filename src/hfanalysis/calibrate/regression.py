@@ -1,4 +1,4 @@
-"""a and n of the fuel's regression r = a G^n fitted to one test or several (report, section 4.3.1, as one estimate).
+"""a and n of the fuel's regression r = a G^n fitted to a test (report, section 4.3.1, as one estimate).
 
 The report finds n for the burn time at a fixed a, and a for the chamber pressure of the full run. Here both are fitted
 at once to burn time (or fuel left) and chamber pressure. A burn sees only a narrow range of oxidizer flux: what it
@@ -72,8 +72,8 @@ class Fitted:
     r'Pr at the best; ``rivals``: other points that explain the test as well.
     """
 
-    evidence: tuple[Evidence, ...]
-    weights: tuple[Weights, ...]
+    evidence: Evidence
+    weights: Weights
     flux: float
     best: Array
     surface: Surface
@@ -92,9 +92,8 @@ class Fitted:
 
     @property
     def reference_flux(self) -> float:
-        """The flux [kg/m^2/s] of the (first test's) burn at which the rate is known best and does not depend on n."""
-        first = self.evidence[0]
-        burnt = first.burnt(self.law)
+        """The flux [kg/m^2/s] of the burn at which the rate is known best and does not depend on n."""
+        burnt = self.evidence.burnt(self.law)
         flux = oxidizer_flux(burnt.output("oxidizer_flow"), burnt.state("port_radius"))
         burn = flux[burnt.time > 0.1]
         covariance = self.surface.covariance
@@ -116,24 +115,23 @@ def law_at(point: Array, flux: float) -> Regression:
     return Regression(exp(float(point[0]) - float(point[1]) * log(flux)), float(point[1]))
 
 
-def fit(tests: Sequence[Evidence]) -> Fitted:
-    """a and n common to the tests. Raises AbsentError where no engine with any constants runs."""
-    flux = middle_flux(tests[0])
-    evidence = list(tests)
-    weights = [first_guess(e.time.size, float(e.chamber.mean()), e.scales) for e in evidence]
+def fit(evidence: Evidence) -> Fitted:
+    """a and n of a test. Raises AbsentError where no engine with any constants runs."""
+    flux = middle_flux(evidence)
+    weights = first_guess(evidence.time.size, float(evidence.chamber.mean()), evidence.scales)
     best = _minimum(evidence, weights, flux, _scan(evidence, weights, flux))
     for _ in range(ROUNDS):
         law = law_at(best, flux)
-        evidence = [e.with_regression(law) for e in evidence]
-        weights = [weighed(e, law) for e in evidence]
+        evidence = evidence.with_regression(law)
+        weights = weighed(evidence, law)
         best, *rivals = _likeliest(evidence, _minima(evidence, weights, flux, best), flux)
     found = _surveyed(evidence, weights, flux, best)
     return replace(found, rivals=tuple(r for r in rivals if abs(r[1] - found.best[1]) > SAME))
 
 
-def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Fitted:
+def _surveyed(evidence: Evidence, weights: Weights, flux: float, best: Array) -> Fitted:
     """The fit with its likelihood's surface."""
-    objective, threshold = _objective(evidence, weights, flux), max(w.threshold for w in weights)
+    objective, threshold = _objective(evidence, weights, flux), weights.threshold
     for _ in range(RESURVEYS):
         best = _minimum(evidence, weights, flux, best, EXACT)
         found = surface(objective, best, _covariance(evidence, weights, flux, best), threshold)
@@ -141,7 +139,7 @@ def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: fl
         if objective(lower) > objective(best) - NEGLIGIBLE:
             break
         best = lower
-    return Fitted(tuple(evidence), tuple(weights), flux, best, found, objective(best))
+    return Fitted(evidence, weights, flux, best, found, objective(best))
 
 
 def middle_flux(evidence: Evidence) -> float:
@@ -153,10 +151,10 @@ def middle_flux(evidence: Evidence) -> float:
     return float(oxidizer_flux(flow, 0.5 * (engine.port_radius + engine.outer_radius)))
 
 
-def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Array:
+def _scan(evidence: Evidence, weights: Weights, flux: float) -> Array:
     """The best of a coarse grid of exponents and rates."""
-    engine, objective = evidence[0].engine, _objective(evidence, weights, flux)
-    rate = (engine.outer_radius - engine.port_radius) / evidence[0].end
+    engine, objective = evidence.engine, _objective(evidence, weights, flux)
+    rate = (engine.outer_radius - engine.port_radius) / evidence.end
     points = [np.array([log(rate * f), n]) for n in SCAN_N for f in SCAN_RATE]
     misfits = [objective(p) for p in points]
     if min(misfits) >= FAILED:
@@ -165,8 +163,8 @@ def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float)
 
 
 def _minimum(
-    evidence: Sequence[Evidence],
-    weights: Sequence[Weights],
+    evidence: Evidence,
+    weights: Weights,
     flux: float,
     start: Array,
     within: float = NEAR,
@@ -178,25 +176,14 @@ def _minimum(
     """
 
     def residual(point: Array) -> Array | None:
-        law = law_at(point, flux)
-        predicted = [e.predict(law) if possible(point) else None for e in evidence]
-        parts = [e.observed - p for e, p in zip(evidence, predicted, strict=True) if p is not None]
-        return np.concatenate(parts) if len(parts) == len(predicted) else None
+        predicted = evidence.predict(law_at(point, flux)) if possible(point) else None
+        return None if predicted is None else evidence.observed - predicted
 
     box = np.array([start[0] - 2.0, range_n[0]]), np.array([start[0] + 2.0, range_n[1]])
-    return least(residual, _beside([w.precision for w in weights]), start, box, within)
+    return least(residual, weights.precision, start, box, within)
 
 
-def _beside(blocks: Sequence[Array]) -> Array:
-    """Square matrices along the diagonal of one."""
-    ends = np.cumsum([len(block) for block in blocks])
-    whole = np.zeros((ends[-1], ends[-1]))
-    for block, end in zip(blocks, ends, strict=True):
-        whole[end - len(block) : end, end - len(block) : end] = block
-    return whole
-
-
-def _minima(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> list[Array]:
+def _minima(evidence: Evidence, weights: Weights, flux: float, best: Array) -> list[Array]:
     """The minima found from the best so far and from other exponents, each once: the valley may have several.
 
     On each side of the best the farthest exponent is the first; where its descent comes to a minimum that is known, it
@@ -213,9 +200,7 @@ def _minima(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: floa
     return out
 
 
-def _floors(
-    evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array, exponents: Sequence[float]
-) -> list[Array]:
+def _floors(evidence: Evidence, weights: Weights, flux: float, best: Array, exponents: Sequence[float]) -> list[Array]:
     """The valley's floor at ``exponents``, which lead away from its ``best`` point, each along the line so far."""
     if not exponents:
         return []
@@ -228,7 +213,7 @@ def _floors(
     return out[1:]
 
 
-def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: float) -> list[Array]:
+def _likeliest(evidence: Evidence, minima: Sequence[Array], flux: float) -> list[Array]:
     """The minima that the test does not tell apart, the most usual first.
 
     Each is judged with the weights that follow from what it leaves itself. Where several are as likely, what is known
@@ -237,25 +222,22 @@ def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: floa
     if len(minima) == 1:
         return list(minima)
     laws = [law_at(point, flux) for point in minima]
-    weights = [[weighed(e, law) for e in evidence] for law in laws]
-    counts = [min(w.effective for w in of_test) for of_test in zip(*weights, strict=True)]
-    deviances = [
-        sum(w.deviance(residual_of(e, law), count) for e, w, count in zip(evidence, own, counts, strict=True))
-        for law, own in zip(laws, weights, strict=True)
-    ]
+    weights = [weighed(evidence, law) for law in laws]
+    count = min(w.effective for w in weights)
+    deviances = [w.deviance(residual_of(evidence, law), count) for law, w in zip(laws, weights, strict=True)]
     usual = [d + ((law.n - USUAL_N[0]) / USUAL_N[1]) ** 2 for law, d in zip(laws, deviances, strict=True)]
     best = int(np.argmin(usual))
-    limit = min(deviances) + max(w.threshold for w in weights[best])
+    limit = min(deviances) + weights[best].threshold
     order = sorted((k for k in range(len(minima)) if k == best or deviances[k] <= limit), key=usual.__getitem__)
     return [minima[k] for k in order]
 
 
-def _objective(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Any:
+def _objective(evidence: Evidence, weights: Weights, flux: float) -> Any:
     def misfit(point: Array) -> float:
         if not possible(point):
             return FAILED
-        law = law_at(point, flux)
-        return sum(_misfit(e, w, law) for e, w in zip(evidence, weights, strict=True))
+        predicted = evidence.predict(law_at(point, flux))
+        return FAILED if predicted is None else weights.misfit(evidence.observed - predicted)
 
     return misfit
 
@@ -267,11 +249,6 @@ def possible(point: Array) -> bool:
     (True, False)
     """
     return bool(log(RANGE_RATE[0]) <= point[0] <= log(RANGE_RATE[1]))
-
-
-def _misfit(evidence: Evidence, weights: Weights, law: Regression) -> float:
-    predicted = evidence.predict(law)
-    return FAILED if predicted is None else weights.misfit(evidence.observed - predicted)
 
 
 def residual_of(evidence: Evidence, law: Regression) -> Array:
@@ -298,12 +275,10 @@ def _by_nuisances(evidence: Evidence, law: Regression) -> Array:
     return np.asarray(slopes @ (evidence.covariance / np.outer(scale, scale)) @ slopes.T)
 
 
-def _covariance(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Array:
+def _covariance(evidence: Evidence, weights: Weights, flux: float, best: Array) -> Array:
     """Of (ln r, n) from the model's slopes; a direction hardly seen is cut at LARGEST_STEP."""
-    information = np.zeros((2, 2))
-    for e, w in zip(evidence, weights, strict=True):
-        along = slopes(e, flux, best)
-        information += along.T @ w.precision @ along
+    along = slopes(evidence, flux, best)
+    information = along.T @ weights.precision @ along
     information[0, 0] = max(information[0, 0], LARGEST_RATE_STEP**-2)
     return np.asarray(np.linalg.inv(information + np.diag([0.0, LARGEST_STEP**-2])), dtype=np.float64)
 

@@ -97,12 +97,11 @@ def result(found: Fitted) -> FuelLaw:
 
 def _conditions(found: Fitted, flux: float) -> Iterator[str]:
     """What a and n hold on, in words."""
-    windows, trickles = [], []
-    for e, w in zip(found.evidence, found.weights, strict=True):
-        burnt = e.burnt(found.law)
-        windows.append(flux_range(e, burnt))
-        trickles.append(set_by_trickle(e, w, burnt, slopes(e, found.flux, found.best), windows[-1]))
-    return conditions(found.law, flux, windows, trickles, found.evidence[0].engine.combustion.fuel.wax)
+    evidence = found.evidence
+    burnt, along = evidence.burnt(found.law), slopes(evidence, found.flux, found.best)
+    window = flux_range(evidence, burnt)
+    trickle = set_by_trickle(evidence, found.weights, burnt, along, window)
+    return conditions(found.law, flux, window, trickle, evidence.engine.combustion.fuel.wax)
 
 
 def rate_at(flux: float) -> str:
@@ -147,8 +146,8 @@ def judge_regression(
 
 
 def _about(found: Fitted, flux: float) -> RegressionBasis:
-    tests = (_about_test(e, w, found.law) for e, w in zip(found.evidence, found.weights, strict=True))
-    return RegressionBasis(reference_flux=Quantity(flux, UNIT_OF_FLUX), misfit=found.misfit, tests=tuple(tests))
+    tests = (_about_test(found.evidence, found.weights, found.law),)
+    return RegressionBasis(reference_flux=Quantity(flux, UNIT_OF_FLUX), misfit=found.misfit, tests=tests)
 
 
 def _about_test(evidence: Evidence, weights: Weights, law: Regression) -> RegressionTest:
