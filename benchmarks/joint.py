@@ -96,7 +96,7 @@ def judge(draw: Draw, laws: Mapping[str, Any]) -> dict[str, Any]:
     return out | {
         "a": law.a.to_json(), "n": law.n.to_json(), "agree": law.agreement.probability,
         "named": law.odd.test if law.odd else None,
-        "alone": {test: own.n.std for test, own in law.alone.items()},
+        "alone": {test: own.n.interval for test, own in law.alone.items()},
     }  # fmt: skip
 
 
@@ -155,7 +155,7 @@ def told(found: Sequence[dict[str, Any]], truth: dict[str, dict[str, float]]) ->
         "| of draws without another fuel | a | n |",
         "|---|---|---|",
         *_intervals(level, truth),
-        f"| tighter than the tightest of the tests alone | | {_share(map(_tighter, level))} |",
+        f"| narrower than the narrowest of the tests alone | | {_share(map(_tighter, level))} |",
         "",
         "| | |",
         "|---|---|",
@@ -194,7 +194,8 @@ def _intervals(level: Sequence[dict[str, Any]], truth: dict[str, dict[str, float
 
 
 def _tighter(one: dict[str, Any]) -> bool:
-    return bool(one["n"]["std"] < min(std for std in one["alone"].values() if std))
+    low, high = one["n"]["ci95"]
+    return bool(high - low < min(b - a for a, b in one["alone"].values()))
 
 
 def _share(found: Any) -> str:

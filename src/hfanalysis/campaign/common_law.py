@@ -7,9 +7,9 @@ where none does alone, and a thousand tests are as soon told as two.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from math import exp, hypot, log, sqrt
+from math import exp, log, sqrt
 
 import numpy as np
 from scipy.special import chdtrc, stdtrit
@@ -29,44 +29,41 @@ TOLD = (IDENTIFIED, CONDITIONAL, NOT_IDENTIFIABLE)
 
 
 @dataclass(frozen=True)
-class _Error:
-    """Of a number [-]: the standard deviation that is its ``own``, and the one ``shared`` by all tests of a stand, as
-    that of a hole's area."""
-
-    own: float
-    shared: float
-
-    @classmethod
-    def of(cls, quantity: Quantity, systematic: float, scale: float = 1.0) -> _Error:
-        """Of a quantity, by ``scale``, of whose deviation a part is ``systematic`` [-]; both together reach as far as
-        its interval."""
-        low, high = quantity.interval or (0.0, 0.0)
-        std = (quantity.std or 0.0) / scale
-        whole = max(std, 0.5 * (high - low) / NORMAL_95 / scale)
-        own = sqrt(std**2 - min(systematic, 0.999 * std) ** 2)
-        return cls(own, sqrt(max(whole**2 - own**2, 0.0)))
-
-    @property
-    def whole(self) -> float:
-        """Both."""
-        return hypot(self.own, self.shared)
-
-
-@dataclass(frozen=True)
 class _Known:
-    """What a test tells: ln r [-] at a ``flux`` [kg/m^2/s] and n [-], with their errors."""
+    """What a test tells: ln r [-] at a ``flux`` [kg/m^2/s] and n [-], with their standard deviations (``rate_std``,
+    ``n_std``), which reach as far as their intervals, and of these the parts that would be the same in a repeated
+    test (``rate_same``, ``n_same``)."""
 
     flux: float
     ln_rate: float
-    of_rate: _Error
+    rate_std: float
+    rate_same: float
     n: float
-    of_n: _Error
+    n_std: float
+    n_same: float
 
-    def at(self, flux: float) -> Quantity:
-        """The rate [m/s] at another flux: a and n of one test trade against each other, and the rate there does not."""
-        away = log(flux / self.flux)
-        rate = exp(self.ln_rate + self.n * away)
-        return Quantity(rate, "m/s", rate * hypot(self.of_rate.own, away * self.of_n.own))
+    def at(self, flux: float, n: float) -> Quantity:
+        """The rate [m/s] at another flux by the ``n`` of all tests: its own n errs against a, and the rate at its own
+        flux does not."""
+        rate = exp(self.ln_rate + n * log(flux / self.flux))
+        return Quantity(rate, "m/s", rate * self.rate_std)
+
+
+@dataclass(frozen=True)
+class _Shared:
+    """The errors of ln r and n [-] that all tests have alike: the least that any of them has of that kind."""
+
+    rate: float
+    n: float
+
+    @classmethod
+    def of(cls, tests: Collection[_Known]) -> _Shared:
+        return cls(min(one.rate_same for one in tests), min(one.n_same for one in tests))
+
+
+def _rest(std: float, shared: float) -> float:
+    """What of a deviation is not shared; never nothing."""
+    return sqrt(max(std**2 - shared**2, 1e-6 * std**2))
 
 
 def _known(law: FuelLaw) -> _Known | None:
@@ -77,8 +74,18 @@ def _known(law: FuelLaw) -> _Known | None:
     if not (rate.value and rate.std and n.std and flux.value) or n.value is None:
         return None
     systematic = law.regression.systematic
-    of_rate = _Error.of(rate, systematic.get("regression_rate_reference", 0.0), rate.value)
-    return _Known(flux.value, log(rate.value), of_rate, n.value, _Error.of(n, systematic.get("n", 0.0)))
+    of_rate = _reaching(rate, systematic.get("regression_rate_reference", 0.0), rate.value)
+    return _Known(flux.value, log(rate.value), *of_rate, n.value, *_reaching(n, systematic.get("n", 0.0)))
+
+
+def _reaching(quantity: Quantity, systematic: float, scale: float = 1.0) -> tuple[float, float]:
+    """The standard deviation of a quantity, or of a normal one that is as wide as its interval, over ``scale``; and the
+    part of it that is ``systematic`` [-] or that the interval has beyond its deviation."""
+    low, high = quantity.interval or (0.0, 0.0)
+    std = (quantity.std or 0.0) / scale
+    whole = max(std, 0.5 * (high - low) / NORMAL_95 / scale)
+    own = _rest(std, systematic)
+    return whole, sqrt(max(whole**2 - own**2, 0.0))
 
 
 def counts(law: FuelLaw) -> bool:
@@ -101,30 +108,21 @@ class _Line:
         return float(w @ self.best), sqrt(float(w @ self.covariance @ w))
 
 
-def _line(tests: Sequence[_Known], flux: float) -> _Line:
-    """Weighted by all of their errors, of which the shared ones do not become less with the number of tests, and are
-    as large as if all were off to the same side. Whether tests agree is asked by their own errors; where they do not,
-    these are as large as the scatter asks for (Student)."""
+def _line(tests: Sequence[_Known], flux: float, shared: _Shared) -> _Line:
+    """The least squares by the errors that are not shared; those that are do not become less with the number of tests.
+    Where tests disagree, the others are as large as the scatter asks for (Student)."""
     slopes = np.array([row for one in tests for row in ((1.0, log(one.flux / flux)), (0.0, 1.0))])
     values = np.array([value for one in tests for value in (one.ln_rate, one.n)])
-    errors = [error for one in tests for error in (one.of_rate, one.of_n)]
-    own, shared, whole = (np.array([getattr(e, name) for e in errors]) for name in ("own", "shared", "whole"))
-    left = (values - slopes @ _weighted(slopes, own) @ values) / own
-    freedom = values.size - 2
-    probability = float(chdtrc(freedom, left @ left))
+    own = np.array([std for one in tests for std in (_rest(one.rate_std, shared.rate), _rest(one.n_std, shared.n))])
+    by_own = slopes / own[:, None]
+    covariance = np.linalg.inv(by_own.T @ by_own)
+    best = covariance @ by_own.T @ (values / own)
+    left = (values - slopes @ best) / own
+    freedom, misfit = values.size - 2, float(left @ left)
+    probability = float(chdtrc(freedom, misfit))
     if probability < DISAGREE:
-        own = own * float(stdtrit(freedom, 0.975)) / NORMAL_95 * sqrt(left @ left / freedom)
-    taken = _weighted(slopes, whole)
-    of_rates = np.arange(values.size) % 2 == 0
-    together = np.column_stack([taken @ np.where(of_rates, shared, 0.0), taken @ np.where(of_rates, 0.0, shared)])
-    covariance = (taken * own**2) @ taken.T + together @ together.T
-    return _Line(taken @ values, covariance, probability)
-
-
-def _weighted(slopes: Array, std: Array) -> Array:
-    """What takes observations with deviations ``std`` (m,) to the constants of their ``slopes`` (m, 2): (2, m)."""
-    by_std = slopes / std[:, None]
-    return np.asarray(np.linalg.solve(by_std.T @ by_std, by_std.T) / std)
+        covariance = covariance * (float(stdtrit(freedom, 0.975)) / NORMAL_95) ** 2 * misfit / freedom
+    return _Line(best, covariance + np.diag([shared.rate**2, shared.n**2]), probability)
 
 
 def common_law(laws: Mapping[str, FuelLaw]) -> CommonLaw:
@@ -134,7 +132,8 @@ def common_law(laws: Mapping[str, FuelLaw]) -> CommonLaw:
         raise AbsentError(f"two tests are needed, and the rate is identified in {next(iter(known), 'none')}")
     told = {test: laws[test] for test in known}
     flux = exp(sum(log(one.flux) for one in known.values()) / len(known))
-    line = _line(list(known.values()), flux)
+    shared = _Shared.of(known.values())
+    line = _line(list(known.values()), flux, shared)
     reference = flux * exp(-line.covariance[0, 1] / line.covariance[1, 1])
     constants = _constants(line, flux, reference, _condition(told))
     agree = "agree" if line.probability >= DISAGREE else "disagree: common constants fit worse than chance allows"
@@ -145,7 +144,7 @@ def common_law(laws: Mapping[str, FuelLaw]) -> CommonLaw:
         regression_rate_reference=constants["regression_rate_reference"],
         regression=RegressionBasis(reference_flux=Quantity(reference, UNIT_OF_FLUX)),
         agreement=Agreement(verdict=agree, probability=line.probability),
-        odd=odd_one({test: one.at(flux) for test, one in known.items()}, PRIOR_SCATTER[RATE]),
+        odd=odd_one({test: one.at(flux, float(line.best[1])) for test, one in known.items()}, PRIOR_SCATTER[RATE]),
         flux=flux,
         alone=told,
     )

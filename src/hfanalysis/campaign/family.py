@@ -92,19 +92,16 @@ def _against(test: str, found: Mapping[str, tuple[float, float]]) -> _Apart:
 
 
 def _by_scatter(test: str, found: Mapping[str, tuple[float, float]], usual: float) -> _Apart:
-    """By how far the others differ and tests of a stand differ at large. Of a deviation that is larger than the least
-    of all the excess is the test's own."""
-    least = min(std / value for value, std in found.values())
-    own = {name: (std / value) ** 2 - least**2 for name, (value, std) in found.items()}
-    others = [name for name in found if name != test]
-    shown = scatter_among(usual, [log(found[name][0]) for name in others])
-    variance = {name: shown.std**2 + own[name] for name in found}
-    total = sum(1.0 / variance[name] for name in others)
-    mean = exp(sum(log(found[name][0]) / variance[name] for name in others) / total)
-    std = sqrt(variance[test] + 1.0 / total)
-    value = found[test][0]
-    beyond = 2.0 * float(stdtr(shown.freedom, -abs(log(value / mean)) / std))
-    return _Apart(value - mean, std * mean, mean, min(1.0, len(found) * beyond))
+    """By how far the others differ, and tests of a stand at large. A test that is known worse than most has to be off
+    by more than that."""
+    logs = {name: log(value) for name, (value, _) in found.items()}
+    relative = {name: std / value for name, (value, std) in found.items()}
+    shown = scatter_among(usual, [x for name, x in logs.items() if name != test])
+    rest = (sum(logs.values()) - logs[test]) / (len(found) - 1)
+    by, mean = logs[test] - rest, exp(rest)
+    beyond = len(found) * 2.0 * float(stdtr(shown.freedom, -abs(by) / shown.drawn))
+    worse = sqrt(max(relative[test] ** 2 - median(relative.values()) ** 2, 0.0))
+    return _Apart(found[test][0] - mean, shown.drawn * mean, mean, min(1.0, beyond) if abs(by) > worse else 1.0)
 
 
 def natural_limits(in_order: Sequence[float]) -> tuple[float, float] | None:
