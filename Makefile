@@ -194,8 +194,8 @@ blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-n
 worlds-quick: $(STAMP) ## 60 tests on other engines, by other loggers and laws: docs/worlds-quick.md; goes on where stopped
 	$(BIN)/python -m benchmarks.worlds_quick --jobs 2 --write docs/worlds-quick.md $(FLAGS)
 
-worlds-tried: $(STAMP) ## 120 tests of wider worlds: what the diagnosis says of where it was tried (worlds.json)
-	$(BIN)/python -m benchmarks.worlds_quick --set calibration --limit 120 --jobs 2 \
+worlds-tried: $(STAMP) ## 72 tests of wider worlds: what the diagnosis says of where it was tried (worlds.json)
+	$(BIN)/python -m benchmarks.worlds_quick --set calibration --limit 72 --jobs 2 \
 		--tried src/hfanalysis/diagnose/answer/worlds.json $(FLAGS)
 
 # A part of the method left out each time, on tests of the kind that it is there for; beside all that is kept, for it is

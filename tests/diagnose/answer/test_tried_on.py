@@ -83,7 +83,7 @@ def test_no_probability_exceeds_what_held_in_the_worst_world(drawn: dict[str, fl
 
 def test_the_table_has_worlds_whose_loggers_and_loads_differ() -> None:
     known = rows()
-    assert len(known) >= 100
+    assert len(known) >= 60
     assert len({row.world for row in known}) >= 8
     assert {"thrust"} in [set(row.conditions.lacks) for row in known]
-    assert sum(row.stated >= SET for row in known) >= 40
+    assert sum(row.stated >= SET for row in known) >= 20
