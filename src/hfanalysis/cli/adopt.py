@@ -9,6 +9,7 @@ from pathlib import Path
 from hfanalysis.cli.exit_status import tell
 from hfanalysis.cli.perform import stage
 from hfanalysis.cli.request import Request
+from hfanalysis.diagnose.answer.words import tried_sentences
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.effects.learnt import STATES
 from hfanalysis.errors import AbsentError, InputError
@@ -104,7 +105,8 @@ def adopt(context: Context, diagnosis: Diagnosis, stand: bool = False, unknown: 
         )
     found = of_diagnosis(diagnosis.effects, library(context.root / FOLDER))
     named = ", ".join(f"{e.name} with probability {e.probability:.2f}" for e in diagnosis.effects)
-    return _written(context, found, stand, [f"Verdict {diagnosis.verdict}: {named}."])
+    words = [f"Verdict {diagnosis.verdict}: {named}.", *tried_sentences(diagnosis)]
+    return _written(context, found, stand, words)
 
 
 def _adopt_unknown(context: Context, diagnosis: Diagnosis, stand: bool) -> Path:
@@ -125,6 +127,7 @@ def _adopt_unknown(context: Context, diagnosis: Diagnosis, stand: bool) -> Path:
         f"{STATES[found.state][2]}; the band is that of the fit.",
         capitalised(_proved_elsewhere(diagnosis)) + ".",
     ]
+    words += tried_sentences(diagnosis)
     if found.hint is not None:
         words.append(f"A hint, not a name: {found.hint.words}.")
     return _written(context, adopted, stand, words, " --unknown")
