@@ -15,6 +15,7 @@ from hfanalysis.campaign.skill import skill_sentence
 from hfanalysis.campaign.words import agreement, diagnosed
 from hfanalysis.products.campaign import Campaign, Diagnosed, Predicted
 from hfanalysis.products.diagnosis import NamedEffect
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import load_definition
 
 
@@ -121,6 +122,14 @@ def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product:
     assert '<a href="index.html">All tests</a>' in text
     assert "<strong>0.93</strong> named" in text
     assert "&lt; 0.01" in text
+
+
+def test_what_is_doubted_is_marked_on_the_overview(product: Campaign) -> None:
+    row = product.tests["A"]
+    doubted = row.but(performance={"total_impulse": Quantity(2.0e4, "N s", 150.0, verdict="doubted", why="zero off")})
+    overview = page(product.but(tests={"A": doubted}, stands={}))
+    assert overview.count('class="verdict doubt"') == 1
+    assert 'class="verdict' not in page(product.but(tests={"A": row}, stands={}))
 
 
 def test_the_record_of_predictions_is_on_the_page_with_both_rivals(product: Campaign) -> None:

@@ -9,7 +9,7 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from hfanalysis.campaign.skill import skill_sentence
-from hfanalysis.campaign.stand_page import NOTHING, cell, parts_of
+from hfanalysis.campaign.stand_page import NOTHING, judged, parts_of
 from hfanalysis.campaign.words import diagnosed
 from hfanalysis.products.campaign import Campaign, Predicted, TestRow
 from hfanalysis.report import html
@@ -40,7 +40,10 @@ def _overview(tests: Mapping[str, TestRow]) -> Markup:
     columns = ("test", "date", "stand", "kind", *(f">{head}" for head in heads), "what the model lacks")
     rows = [_test(test, row) for test, row in tests.items()]
     kept = [i for i, _ in enumerate(columns) if any(row[i] != NOTHING for row in rows)]
-    caption = "Measured performance, the apogee predicted with it, and what the diagnosis found."
+    caption = (
+        "Measured performance, the apogee predicted with it, and what the diagnosis found. A number with a question "
+        "mark is doubted: its test's page says why."
+    )
     shown = [[row[i] for i in kept] for row in rows]
     return html.table("Tests", caption, [columns[i] for i in kept], shown, sorts=True)
 
@@ -71,7 +74,7 @@ def _test(test: str, row: TestRow) -> tuple[Any, ...]:
     name: Any = test
     if row.page:
         name = Markup('<a href="{}">{}</a>').format(f"{quote(test)}/report.html", test)
-    numbers = [cell(name, row.performance.get(name)) for name in _NUMBERS]
+    numbers = [judged(name, row.performance.get(name)) for name in _NUMBERS]
     kind = KINDS.get(row.kind or "", row.kind or "–")
     lacks = diagnosed(row.diagnosis)
-    return (name, row.date or NOTHING, row.stand or NOTHING, kind, *numbers, cell("apogee", row.apogee), lacks)
+    return (name, row.date or NOTHING, row.stand or NOTHING, kind, *numbers, judged("apogee", row.apogee), lacks)

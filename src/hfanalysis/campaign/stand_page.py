@@ -57,7 +57,7 @@ def _constants(stand: StandRow, rows: Mapping[str, TestRow]) -> Iterator[Markup]
         [(html.symbol_and_words(name), cell(name, one.mean), agreement(one)) for name, one in constants.items()],
     )  # fmt: skip
     names = [*constants, *(name for name in LAW if any(name in row.calibration for row in rows.values()))]
-    of = [(test, *(_judged(name, row.calibration.get(name)) for name in names)) for test, row in rows.items()]
+    of = [(test, *(judged(name, row.calibration.get(name)) for name in names)) for test, row in rows.items()]
     heads = ("test", *(f">{name}" for name in names))
     yield html.table("Constants by test", "As each test has them.", heads, of, sorts=True)
     for name, together in constants.items():
@@ -72,9 +72,10 @@ def _picture(name: str, found: Mapping[str, Quantity], together: Together) -> Ma
     return Markup('<figure><div class="plot">{}</div></figure>').format(made) if made else Markup()
 
 
-def _judged(name: str, quantity: Quantity | None) -> Markup:
-    verdict = (quantity.verdict if quantity else None) or ""
-    return cell(name, quantity) + (Markup(" ") + html.verdict(verdict) if html.mark(verdict) != "good" else Markup())
+def judged(name: str, quantity: Quantity | None) -> Markup:
+    """The same with its verdict, where that is no good one."""
+    verdict, plain = (quantity.verdict if quantity else None) or "", cell(name, quantity)
+    return plain if not verdict or html.mark(verdict) == "good" else plain + Markup(" ") + html.verdict(verdict)
 
 
 def _effects(stand: StandRow) -> Iterator[Markup]:
