@@ -29,6 +29,7 @@ from hfanalysis.progress import silent
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
 from hfanalysis.simulation import plots
+from hfanalysis.simulation import predict as prediction
 from hfanalysis.simulation.foretelling import (
     QUANTITIES,
     Base,
@@ -121,6 +122,24 @@ def test_scatter_between_tests_is_what_stands_have_and_what_these_tests_show(bas
     assert three.freedom == PRIOR_FREEDOM + 2
     shifts = [shift["C_i"] for shift in to_mean([with_c(0.2), with_c(0.3)])]
     assert shifts == pytest.approx([0.5 * log(1.5), -0.5 * log(1.5)])
+
+
+def test_what_is_off_in_the_fired_test_as_well_is_in_no_band(
+    plan: PlannedTest, base: Base, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same test once more, none differing from the other: the errors of the constants, sensors' zeros and areas
+    among them, move the engine by a per cent or two, and what is told of it by next to nothing."""
+    none = {name: found.but(drawn=0.0) for name, found in scatter_of([base]).items()}
+    monkeypatch.setattr(prediction, "scatter_of", lambda bases: none)
+    monkeypatch.setattr(prediction, "LASTS", 0.0)
+    there = planned(plan, base)
+    table = prediction._drawn(plan, [base], [there], [prediction.misses_of(base)], 60, 1)
+    made = [change.of(there.stand) for change in changes(base, there, none, 60, 1, to_mean([base])[0])]
+    loose = outcomes(made, [], None)
+    for name in ("total_impulse", "peak_chamber_pressure"):
+        column = list(QUANTITIES).index(name)
+        assert np.log(loose[:, column]).std() > 0.01
+        assert np.log(table[:, column]).std() < 0.3 * np.log(loose[:, column]).std()
 
 
 def test_effects_are_drawn_within_their_bounds(plan: PlannedTest, base: Base) -> None:

@@ -170,8 +170,10 @@ def logs_of(found: Sequence[Calibration]) -> dict[str, list[float]]:
 @dataclass(frozen=True)
 class Change:
     """How one drawn engine differs: errors of the constants by name [SI], as of the engine ``measured_on``; factors [-]
-    of area, a, throat and fuel; additions to oxidizer [kg] and temperature [K]; effects."""
+    of area, a, throat and fuel; additions to oxidizer [kg] and temperature [K]; effects. ``fired``: the errors of the
+    constants together with those of the test that was fired."""
 
+    fired: Mapping[str, float]
     off: Mapping[str, float]
     measured_on: Engine
     area: float
@@ -181,6 +183,10 @@ class Change:
     oxidizer: float
     temperature: float
     effects: tuple[Active, ...]
+
+    def of_the_fired(self, engine: Engine) -> Engine:
+        """The engine that was fired, with the same errors of what is known of it."""
+        return replace(off_by(engine, self.fired, self.measured_on), effects=self.effects)
 
     def of(self, engine: Engine) -> Engine:
         """An engine so changed."""
@@ -212,13 +218,13 @@ def changes(
     joint, engine, file = base.found.joint, base.found.full.engine, plan.file
     factor = law_of(base.found.calibration, joint).factor
     for _ in range(count):
-        off = dict(zip(joint.names, factor @ rng.standard_normal(len(joint.names)), strict=True))
-        for name in OF_THE_FIRED:
-            off.pop(name, None)
+        fired = dict(zip(joint.names, factor @ rng.standard_normal(len(joint.names)), strict=True))
+        off = {name: by for name, by in fired.items() if name not in OF_THE_FIRED}
         own_throat = _relative(file.nozzle.throat_radius) * rng.standard_normal()
         if own_throat:
             off.pop("throat_area", None)
         yield Change(
+            fired=fired,
             off=off,
             measured_on=engine,
             area=exp(shift["C_i"] + _between(scatter["C_i"], rng)),

@@ -18,7 +18,17 @@ from hfanalysis.products.prediction import Foretold, Origin, Prediction, Score, 
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.planned import PlannedTest
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulation.foretelling import QUANTITIES, Base, Planned, changes, outcomes, planned, scatter_of, to_mean
+from hfanalysis.simulation.foretelling import (
+    QUANTITIES,
+    Base,
+    Change,
+    Planned,
+    changes,
+    outcomes,
+    planned,
+    scatter_of,
+    to_mean,
+)
 from hfanalysis.version import __version__
 
 BAND = 0.90
@@ -109,16 +119,31 @@ def _drawn(
     """Outcomes of all draws, (draws, quantities), moved by what the model ``misses`` in each test, which has its share
     of the draws."""
     scatter, stands, flying = scatter_of(bases), list[Engine](), list[Engine]()
+    moved = []
     for i, (base, own, shift) in enumerate(zip(bases, plans, to_mean(bases), strict=True)):
-        count = len(range(i, draws, len(bases)))
-        for change in changes(base, own, scatter, count, seed + i, shift):
-            stands.append(change.of(own.stand))
-            flying += [change.of(own.flying)] if own.flying is not None else []
+        drawn = list(changes(base, own, scatter, len(range(i, draws, len(bases))), seed + i, shift))
+        stands += [change.of(own.stand) for change in drawn]
+        flying += [change.of(own.flying) for change in drawn if own.flying is not None]
+        moved.append(_missed(base, drawn))
     table = outcomes(stands, flying, _rail(plan))
     counts = [len(range(i, draws, len(bases))) for i in range(len(bases))]
     missed = np.repeat([[own.get(name, 0.0) for name in QUANTITIES] for own in misses], counts, axis=0)
     noise = np.random.default_rng([seed, 1]).standard_normal(table.shape)
-    return np.asarray(table * np.exp(missed * (1.0 + LASTS * noise)))
+    return np.asarray(table * np.exp(np.concatenate(moved) + LASTS * missed * noise))
+
+
+def _missed(base: Base, drawn: Sequence[Change]) -> Array:
+    """ln(measured/model) of a test [-], (draws, quantities), by a model with the same errors as each draw: what is off
+    in the test that was fired as in the next one is off in no difference between them. Where the drawn engine does not
+    run, or nothing was measured, that is of the quantity as it is, or nothing."""
+    plain, found = misses_of(base), _fired(base, drawn)
+    out = np.zeros(found.shape)
+    for i, name in enumerate(QUANTITIES):
+        measured = base.measured.get(name)
+        if name in plain and measured is not None and measured.value:
+            good = np.isfinite(found[:, i]) & (found[:, i] > 0.0)
+            out[:, i] = np.where(good, log(measured.value) - np.log(np.where(good, found[:, i], 1.0)), plain[name])
+    return out
 
 
 def _of_a_day(
@@ -173,13 +198,19 @@ def _on_average(misses: Sequence[Mapping[str, float]]) -> dict[str, float]:
 
 def _model(base: Base) -> dict[str, float]:
     """What the model says of the test itself [SI]."""
+    table = _fired(base)[0]
+    return {name: float(value) for name, value in zip(QUANTITIES, table, strict=True) if np.isfinite(value)}
+
+
+def _fired(base: Base, drawn: Sequence[Change] = ()) -> Array:
+    """What the model says of the test itself, (1, quantities), or with every one of the ``drawn`` errors."""
     full, definition = base.found.full, base.found.definition
     engine = replace(full.engine, oxidizer_enthalpy=None) if full.follows else full.engine
+    engines = [change.of_the_fired(engine) for change in drawn] or [engine]
     stated = definition.rocket
     vehicle = rocket.vehicle(stated, definition.folder, launch_altitude(definition)) if stated is not None else "none"
-    flying = [replace(engine, vehicle=vehicle)] if isinstance(vehicle, Vehicle) else []
-    table = outcomes([engine], flying, stated.guided_length if stated is not None else None)[0]
-    return {name: float(value) for name, value in zip(QUANTITIES, table, strict=True) if np.isfinite(value)}
+    flying = [replace(one, vehicle=vehicle) for one in engines] if isinstance(vehicle, Vehicle) else []
+    return outcomes(engines, flying, stated.guided_length if stated is not None else None)
 
 
 def _without(plan: PlannedTest, bases: Sequence[Base], temperature: str | None) -> dict[str, Quantity]:
