@@ -50,11 +50,18 @@ def test_outside_of_all_it_counts_as_the_worst_world(own: Conditions, said: str)
     found = tried_on(own, table(40, 30))
     assert found is not None
     assert found.outside == (said,)
-    assert found.misled == pytest.approx(11.0 / 42.0)  # ten of forty wrong, and one more of each
+    assert found.misled == pytest.approx(10.5 / 44.0)  # ten of forty wrong, and four more as the average, an eighth
     product = filled(Diagnosis, {"verdict": "named"}).but(tried_on=found)
     told = tried_sentences(product)
     assert said in told[0]
-    assert "26 % of sure statements were wrong" in told[1]
+    assert "24 % of sure statements were wrong" in told[1]
+
+
+@pytest.mark.parametrize("better", [{"rate": 20_000.0}, {"rest": 3600.0}, {"noise": 1e-5}])
+def test_what_is_better_than_all_that_was_tried_is_not_outside(better: dict[str, float]) -> None:
+    found = tried_on(replace(SLOW, **better), table(40, 30))
+    assert found is not None
+    assert found.outside == ()
 
 
 def test_a_claim_is_told_with_how_often_such_were_right() -> None:
@@ -86,4 +93,4 @@ def test_the_table_has_worlds_whose_loggers_and_loads_differ() -> None:
     assert len(known) >= 60
     assert len({row.world for row in known}) >= 8
     assert {"thrust"} in [set(row.conditions.lacks) for row in known]
-    assert sum(row.stated >= SET for row in known) >= 20
+    assert sum(row.stated >= SET for row in known) >= 15

@@ -56,6 +56,10 @@ class Conditions:
         return float(apart + len(set(self.lacks) ^ set(other.lacks)))
 
 
+AVERAGE = 4
+"""Statements as good as the average that are counted with those of a world. Source: choice, as many as a world has
+itself; of one or two alone the worst world's share would be all or nothing."""
+
 WORDS = {
     "rate": ("samples a second", "", ".3g"),
     "rest": ("of rest", "s", ".2g"),
@@ -121,7 +125,7 @@ def tried_on(conditions: Conditions | None, known: Sequence[Row]) -> TriedOn | N
     beyond = tuple(
         _beyond(name, conditions.numbers[name], min(all_of), max(all_of))
         for name, all_of in ranges.items()
-        if not min(all_of) / BEYOND <= conditions.numbers[name] <= BEYOND * max(all_of)
+        if _outside(name, conditions.numbers[name], min(all_of), max(all_of))
     )
     lacks = {row.conditions.lacks for row in known}
     if not any(set(conditions.lacks) <= set(own) for own in lacks):
@@ -137,6 +141,16 @@ def _told(own: Conditions) -> TriedOn:
     return TriedOn(rate=own.rate, rest=own.rest, noise=own.noise, load=own.load, like=0, sure=0, right=0)
 
 
+WORSE = {"rate": (True, False), "rest": (True, False), "noise": (False, True), "load": (True, True)}
+"""Whether less than the least of a condition, and more than the most, is outside: more samples, more rest and less
+noise can be made those that were tried by leaving out and adding."""
+
+
+def _outside(name: str, value: float, least: float, most: float) -> bool:
+    below, above = WORSE[name]
+    return (below and value < least / BEYOND) or (above and value > BEYOND * most)
+
+
 def _beyond(name: str, value: float, low: float, high: float) -> str:
     words, unit, form = WORDS[name]
     own, least, most = (f"{(100.0 if unit == '%' else 1.0) * x:{form}}" for x in (value, low, high))
@@ -144,13 +158,14 @@ def _beyond(name: str, value: float, low: float, high: float) -> str:
 
 
 def _worst(known: Sequence[Row]) -> float:
-    """Share [-] of sure statements that were wrong in the world in which that is largest; of few, counted with one
-    right and one wrong one more (Laplace)."""
-    shares = []
-    for world in {row.world for row in known}:
-        sure = [row for row in known if row.world == world and row.stated >= SET]
-        shares.append((sum(not row.right for row in sure) + 1.0) / (len(sure) + 2.0))
-    return max(shares)
+    """Share [-] of sure statements that were wrong in the world in which that is largest, each world's counted with
+    AVERAGE more that are wrong as often as those of all worlds."""
+    sure = [row for row in known if row.stated >= SET]
+    if not sure:
+        return 1.0
+    wrong = sum(not row.right for row in sure) / len(sure)
+    by_world = [[not row.right for row in sure if row.world == world] for world in {row.world for row in sure}]
+    return max((sum(of) + AVERAGE * wrong) / (len(of) + AVERAGE) for of in by_world)
 
 
 def mixed(posterior: Mapping[str, float], misled: float) -> dict[str, float]:
