@@ -25,8 +25,8 @@ from tests.report.browser import CHROMIUM, browser
 STANDS = 3
 
 
-def campaign_of(root: Path, own: int, count: int) -> Any:
-    """``count`` tests below ``root`` on three stands, ``own`` of them calibrated and the others these off by chance; with
+def campaign_of(root: Path, own: int, count: int) -> tuple[Any, float]:
+    """``count`` tests on three stands, ``own`` of them calibrated below ``root`` and the others these off by chance; and
     the seconds that it takes to say what they say together."""
     from hfanalysis.campaign.product import row_of, stand_row
     from hfanalysis.campaign.side_by_side import Ended
