@@ -26,7 +26,7 @@ STANDS = 3
 
 
 def campaign_of(root: Path, own: int, count: int) -> tuple[Any, float]:
-    """``count`` tests on three stands, ``own`` of them calibrated below ``root`` and the others these off by chance; and
+    """``count`` tests on three stands, ``own`` of them calibrated below ``root``, the others these off by chance; and
     the seconds that it takes to say what they say together."""
     from hfanalysis.campaign.product import row_of, stand_row
     from hfanalysis.campaign.side_by_side import Ended
