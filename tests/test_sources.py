@@ -118,7 +118,8 @@ def test_every_data_file_belongs_to_a_package() -> None:
     there = {path for path in PACKAGE.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
     assert data(ALL) == there - ALL
     assert {short(path) for path in data([PACKAGE / "diagnose" / "answer" / "posterior.py"])} == {
-        "diagnose/answer/probabilities.json"
+        "diagnose/answer/probabilities.json",
+        "diagnose/answer/worlds.json",
     }
 
 

@@ -33,6 +33,7 @@ from hfanalysis.simulation import predict as prediction
 from hfanalysis.simulation.foretelling import (
     QUANTITIES,
     Base,
+    Change,
     changes,
     law_of,
     outcomes,
@@ -122,6 +123,22 @@ def test_scatter_between_tests_is_what_stands_have_and_what_these_tests_show(bas
     assert three.freedom == PRIOR_FREEDOM + 2
     shifts = [shift["C_i"] for shift in to_mean([with_c(0.2), with_c(0.3)])]
     assert shifts == pytest.approx([0.5 * log(1.5), -0.5 * log(1.5)])
+
+
+def test_what_the_plan_states_of_holes_and_exit_is_off_by_its_own(root: Path, base: Base) -> None:
+    path = plan_of(root, "HF4", "20 degC", "loose")
+    text = path.read_text(encoding="utf-8")
+    stated = text.replace('"3.142 mm^2"', '"3.142 mm^2 +/- 4 %"').replace('"38.1 mm"', '"38.1 mm +/- 1 %"')
+    none = {name: found.but(drawn=0.0) for name, found in scatter_of([base]).items()}
+
+    def drawn(of: str, count: int) -> list[Change]:
+        path.write_text(of, encoding="utf-8")
+        return list(changes(base, planned(load_planned(path), base), none, count, 5, to_mean([base])[0]))
+
+    loose, tight = drawn(stated, 2000), drawn(text, 5)
+    assert np.std([log(c.area) for c in loose]) == pytest.approx(0.04, rel=0.1)
+    assert np.std([log(c.exit) for c in loose]) == pytest.approx(0.02, rel=0.1)  # the area goes with the square
+    assert {(c.area, c.exit) for c in tight} == {(1.0, 1.0)}
 
 
 def test_what_is_off_in_the_fired_test_as_well_is_in_no_band(

@@ -170,8 +170,8 @@ def logs_of(found: Sequence[Calibration]) -> dict[str, list[float]]:
 @dataclass(frozen=True)
 class Change:
     """How one drawn engine differs: errors of the constants by name [SI], as of the engine ``measured_on``; factors [-]
-    of area, a, throat and fuel; additions to oxidizer [kg] and temperature [K]; effects. ``fired``: the errors of the
-    constants together with those of the test that was fired."""
+    of area, a, throat, exit and fuel; additions to oxidizer [kg] and temperature [K]; effects. ``fired``: the errors of
+    the constants together with those of the test that was fired."""
 
     fired: Mapping[str, float]
     off: Mapping[str, float]
@@ -179,6 +179,7 @@ class Change:
     area: float
     a: float
     throat: float
+    exit: float
     fuel: float
     oxidizer: float
     temperature: float
@@ -196,6 +197,7 @@ class Change:
             feed=replace(made.feed, area=made.feed.area * self.area),
             a=made.a * self.a,
             throat_area=made.throat_area * self.throat,
+            exit_area=max(made.exit_area * self.exit, made.throat_area * self.throat),
             fuel_mass=made.fuel_mass * self.fuel,
             oxidizer_mass=made.oxidizer_mass + self.oxidizer,
             temperature=made.temperature + self.temperature,
@@ -227,9 +229,10 @@ def changes(
             fired=fired,
             off=off,
             measured_on=engine,
-            area=exp(shift["C_i"] + _between(scatter["C_i"], rng)),
+            area=exp(shift["C_i"] + _between(scatter["C_i"], rng) + _stated_off(file.injector.area, rng)),
             a=exp(shift[RATE] + _between(scatter[RATE], rng)),
             throat=exp(2.0 * own_throat),
+            exit=exp(2.0 * _stated_off(file.nozzle.exit_radius, rng)),
             fuel=exp(_relative(file.grain.mass) * rng.standard_normal()),
             oxidizer=_std(file.tank.oxidizer_mass) * rng.standard_normal(),
             temperature=_std(file.tank.temperature) * rng.standard_normal(),
@@ -239,6 +242,12 @@ def changes(
 
 def _between(scatter: Scatter, rng: np.random.Generator) -> float:
     return float(scatter.drawn * rng.standard_t(scatter.freedom or PRIOR_FREEDOM))
+
+
+def _stated_off(value: Value | None, rng: np.random.Generator) -> float:
+    """By what part of itself a stated value is off; nothing is drawn where it is stated without its error."""
+    relative = _relative(value)
+    return relative * float(rng.standard_normal()) if relative else 0.0
 
 
 def _std(value: Value | None) -> float:

@@ -127,9 +127,9 @@ def tried_on(conditions: Conditions | None, known: Sequence[Row]) -> TriedOn | N
         for name, all_of in ranges.items()
         if _outside(name, conditions.numbers[name], min(all_of), max(all_of))
     )
-    lacks = {row.conditions.lacks for row in known}
-    if not any(set(conditions.lacks) <= set(own) for own in lacks):
-        beyond = (*beyond, f"none without {listed(list(conditions.lacks))} was tried")
+    tried = {name for row in known for name in row.conditions.lacks}
+    if alone := [name for name in conditions.lacks if name not in tried]:
+        beyond = (*beyond, f"none without {listed(alone)} was tried")
     return _told(conditions).but(
         like=len(near), sure=len(sure), right=sum(row.right for row in sure),
         outside=beyond, misled=_worst(known) if beyond else 0.0,
