@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from tests.products.filled import filled
 
 from hfanalysis.campaign.common_law import common_law, counts
+from hfanalysis.campaign.words import regression_sentence
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_FLUX, FuelLaw
 from hfanalysis.quantity import CONDITIONAL, DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, Quantity
@@ -83,6 +84,17 @@ def test_what_a_test_holds_on_the_law_of_all_holds_on() -> None:
     found = common_law({"T1": law(200.0), "T2": law(250.0, verdict=CONDITIONAL)})
     assert found.n.verdict == CONDITIONAL
     assert found.n.why == "as 1 of 2 tests have it; T2: w"
+
+
+def test_the_sentence_of_a_law_says_on_what_it_holds() -> None:
+    sure = common_law({"T1": law(200.0), "T2": law(250.0)})
+    held = common_law({"T1": law(200.0), "T2": law(250.0, verdict=CONDITIONAL)})
+    apart = common_law({f"T{i}": law(200.0 + i, n_std=0.9, verdict=NOT_IDENTIFIABLE) for i in range(2)})
+    assert "conditional" not in regression_sentence(sure)
+    assert ", conditional: as 1 of 2 tests have it; T2: w." in regression_sentence(held)
+    assert ", not identifiable: a and n are not told apart" in regression_sentence(apart)
+    many = common_law({f"T{i}": law(150.0 + i) for i in range(40)})
+    assert regression_sentence(many).startswith("One regression law for all 40 tests: a = (")
 
 
 def test_a_doubted_law_counts_for_nothing() -> None:

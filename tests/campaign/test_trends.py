@@ -46,7 +46,9 @@ def test_a_coefficient_that_falls_with_the_back_pressure_is_told_with_what_else_
     (said,) = conclusions(stand, tests)
     assert said.startswith("C_i falls with the pressure behind the injector over that before it over 7 tests")
     assert said.endswith("or a pressure's sensor moves both.")
-    assert "Trends" in page(product.but(tests=tests, stands={"cell 3": stand}))
+    text = page(product.but(tests=tests, stands={"cell 3": stand.but(trends=(one.but(probability=1e-5),))}))
+    assert 'aria-label="Trends: table"' in text
+    assert '<td class="r">less than 0.001</td>' in text
 
 
 def test_by_chance_one_is_told_as_rarely_as_stated(product: Campaign) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from benchmarks import joint as study
-from tests.campaign.test_common_law import law
+from tests.campaign.test_common_law import A, N, law
 
 TRUTH = {"0": {"a": 1e-4, "n": 0.5}}
 
@@ -67,3 +67,11 @@ def test_a_draw_is_judged_by_the_laws_of_its_tests() -> None:
     low, high = level["alone"]["J000"]
     assert level["n"]["ci95"][1] - level["n"]["ci95"][0] < high - low
     assert "two tests are needed" in study.judge(study.Draw("D", ("J000", "J009"), None), laws)["reason"]
+
+
+def test_stands_are_told_one_by_one() -> None:
+    """Rates of the truth do not scatter; one that is a tenth off is the odd one there."""
+    laws = {f"J00{i}": law(150.0 + 30.0 * i) for i in range(5)} | {"J0x1": law(200.0, off=0.2)}
+    judged = study.judge(study.Draw("D", tuple(laws), "J0x1"), laws)
+    (row,) = study.by_stand([judged], laws, {"0": {"a": A, "n": N}})[2:]
+    assert row == "| 0 | 0.0 % | 100 % (1 of 1) |"

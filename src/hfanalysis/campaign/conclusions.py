@@ -8,7 +8,7 @@ from math import hypot
 from hfanalysis.campaign.pooling import DISAGREE, pooled
 from hfanalysis.campaign.sensors import courses, drifts
 from hfanalysis.campaign.trends import STEADY
-from hfanalysis.campaign.words import NAMED, tests_named
+from hfanalysis.campaign.words import NAMED, by_chance, tests_named
 from hfanalysis.products.campaign import (
     CommonLaw,
     Course,
@@ -78,10 +78,9 @@ def _odd(odd: Odd, words: str) -> Iterator[str]:
         yield f"{odd.test} does not fit the rest: its {words} is not zero, as theirs is."
         return
     by, off = abs(100.0 * apart / rest), abs(100.0 * (odd.apart.std or 0.0) / rest)
-    chance = "less than 0.001" if odd.probability < 1e-3 else f"{odd.probability:.2g}"
     yield (
         f"{odd.test} does not fit the rest: its {words} is {by:.1f} ± {off:.1f} % "
-        f"{'above' if apart * rest > 0.0 else 'below'} theirs (by chance: {chance})."
+        f"{'above' if apart * rest > 0.0 else 'below'} theirs (by chance: {by_chance(odd.probability)})."
     )
     if odd.special:
         yield f"What else sets it apart: {listed(list(odd.special))}."
@@ -166,10 +165,9 @@ def _trends(found: Sequence[Trend]) -> Iterator[str]:
         if one.probability >= STEADY:
             continue
         word = "rises" if (one.slope.value or 0.0) > 0.0 else "falls"
-        chance = "less than 0.001" if one.probability < 1e-3 else f"{one.probability:.2g}"
         yield (
-            f"{one.of} {word} with the {in_words(one.over)} over {len(one.tests)} tests (by chance: {chance}), "
-            "or a pressure's sensor moves both."
+            f"{one.of} {word} with the {in_words(one.over)} over {len(one.tests)} tests "
+            f"(by chance: {by_chance(one.probability)}), or a pressure's sensor moves both."
         )
 
 
@@ -183,12 +181,14 @@ def _sensors(sensors: Mapping[str, SensorRow]) -> Iterator[str]:
         for test in course.left:
             yield f"{whose} was off in {test}: {_number(course.by_test[test])}."
         if what == "gain":
-            yield from _half(whose, course)
+            yield from _not_one(whose, course)
 
 
-def _half(whose: str, course: Course) -> Iterator[str]:
-    """That a cell shows another load than the one stated, test for test."""
-    together = pooled(course.by_test)
+def _not_one(whose: str, course: Course) -> Iterator[str]:
+    """That a cell shows another load than the one stated, test for test, by more than it is known to in any of them:
+    its own error is the same in all."""
+    least = min(quantity.std or 0.0 for quantity in course.by_test.values())
+    together = pooled(course.by_test, least)
     if together is not None and together.mean.interval is not None:
         low, high = together.mean.interval
         if not low <= 1.0 <= high:

@@ -10,9 +10,9 @@ from markupsafe import Markup, escape
 from hfanalysis.campaign.conclusions import conclusions
 from hfanalysis.campaign.family import FAMILY
 from hfanalysis.campaign.individuals import individuals
-from hfanalysis.campaign.sensors import courses
+from hfanalysis.campaign.sensors import courses, drifts
 from hfanalysis.campaign.strips import strip
-from hfanalysis.campaign.words import HIDDEN, agreement, alone, regression_sentence, tests_named
+from hfanalysis.campaign.words import HIDDEN, agreement, alone, by_chance, regression_sentence, tests_named
 from hfanalysis.products.campaign import StandRow, TestRow, Together
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
@@ -117,8 +117,7 @@ def _chance(probability: float | None, named: bool) -> Markup:
 def _trends(stand: StandRow) -> Markup:
     """Every trend that was looked for, the steady ones and the others."""
     rows = [
-        (one.of, in_words(one.over), len(one.tests), html.value(one.slope),
-         "&lt; 0.001" if one.probability < 1e-3 else fixed(one.probability, 3))
+        (one.of, in_words(one.over), len(one.tests), html.value(one.slope), by_chance(one.probability))
         for one in sorted(stand.trends, key=lambda one: one.probability)
     ]  # fmt: skip
     heads = ("constant", "with", ">tests", ">slope", ">by chance")
@@ -138,13 +137,15 @@ def _sensors(stand: StandRow, rows: Mapping[str, TestRow]) -> Iterator[Markup]:
         (test, *(cell(units[name] if what == "zero" else "", course.by_test.get(test)) for name, what, course in found))
         for test in tests
     ]
-    caption = "What was taken off as a sensor's zero, in the order of dates; another serial number is another sensor."
+    caption = (
+        "What was taken off as a sensor's zero, in the order of dates, and as gain of the tank's cell the load that it "
+        "showed over the one stated. Another serial number is another sensor."
+    )
     heads = ("test", *(f">{name}{', gain' if what == 'gain' else ''}" for name, what, _ in found))
-    yield html.table("Zeros of the sensors", caption, heads, of, sorts=True)
+    yield html.table("Sensors", caption, heads, of, sorts=True)
     for name, what, course in found:
-        if course.left or course.drifts is not None:
-            picture = individuals(units[name] if what == "zero" else "", course.by_test)
-            if picture:
-                words = f"{'Zero' if what == 'zero' else 'Gain'} of {name}"
-                frame = '<figure><div class="plot">{}</div><figcaption>{}</figcaption></figure>'
-                yield Markup(frame).format(picture, words)
+        if not (drifts(course) or course.left):
+            continue
+        if picture := individuals(units[name] if what == "zero" else what, course.by_test):
+            frame = '<figure><div class="plot">{}</div><figcaption>{}</figcaption></figure>'
+            yield Markup(frame).format(picture, f"{what.capitalize()} of {name}")

@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from hfanalysis.campaign.pooling import DISAGREE
 from hfanalysis.products.campaign import CommonLaw, Diagnosed, NoLaw, Together
+from hfanalysis.quantity import IDENTIFIED
 from hfanalysis.report.names import called
 from hfanalysis.wording.numbers import listed, shown
 
@@ -22,7 +23,18 @@ def tests_named(tests: Collection[str], of: int) -> str:
     >>> tests_named(("A", "B"), 3), tests_named([f"T{i}" for i in range(40)], 50)
     ('A and B', '40 of 50 tests')
     """
-    return listed(list(tests)) if len(tests) <= NAMED else f"{len(tests)} of {of} tests"
+    if len(tests) <= NAMED:
+        return listed(list(tests))
+    return f"all {of} tests" if len(tests) == of else f"{len(tests)} of {of} tests"
+
+
+def by_chance(probability: float) -> str:
+    """How probable something is by chance.
+
+    >>> by_chance(0.0123), by_chance(1e-6)
+    ('0.012', 'less than 0.001')
+    """
+    return "less than 0.001" if probability < 1e-3 else f"{probability:.2g}"
 
 
 def agreement(together: Together | CommonLaw) -> str:
@@ -57,5 +69,7 @@ def regression_sentence(product: CommonLaw | NoLaw) -> str:
         return f"No common regression law: {product.reason}."
     a, n = map(shown, (product.a, product.n))
     law = f"a = ({a.value} ± {a.std}) {a.unit}, n = {n.value} ± {n.std}"
-    of = tests_named(product.tests, len(product.tests)).replace(f"{len(product.tests)} of ", "all ")
+    if product.n.verdict != IDENTIFIED:
+        law += f", {product.n.verdict}: {product.n.why}"
+    of = tests_named(product.tests, len(product.tests))
     return f"One regression law for {of}: {law}. The tests {agreement(product)}."

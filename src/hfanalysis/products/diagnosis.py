@@ -215,8 +215,8 @@ class TriedOn(Part):
     noise: Annotated[float, Is("of a mean, over the channel's largest value", "")]
     load: Annotated[float, Is("oxidizer", "kg")]
     like: Annotated[int, Is("simulated tests most like this one", "")]
-    sure: Annotated[int, Is("statements at 0.9 or more in these", "")]
-    right: Annotated[int, Is("statements of those that were right", "")]
+    sure: Annotated[int, Is("tests of these with a statement above 0.9", "")]
+    right: Annotated[int, Is("tests of those in which all such were right", "")]
     outside: Annotated[tuple[Words, ...], Is("in what this test is outside of all that were tried")] = ()
     misled: Annotated[float, Is(
         "of a test outside: share of sure statements that were wrong in the world where that was worst; counted in", ""

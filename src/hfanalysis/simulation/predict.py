@@ -118,31 +118,32 @@ def _drawn(
 ) -> Array:  # fmt: skip
     """Outcomes of all draws, (draws, quantities), moved by what the model ``misses`` in each test, which has its share
     of the draws."""
-    scatter, stands, flying = scatter_of(bases), list[Engine](), list[Engine]()
-    moved = []
+    scatter, stands, flying, moved = scatter_of(bases), list[Engine](), list[Engine](), list[Array]()
+    counts = [len(range(i, draws, len(bases))) for i in range(len(bases))]
     for i, (base, own, shift) in enumerate(zip(bases, plans, to_mean(bases), strict=True)):
-        drawn = list(changes(base, own, scatter, len(range(i, draws, len(bases))), seed + i, shift))
+        drawn = list(changes(base, own, scatter, counts[i], seed + i, shift))
         stands += [change.of(own.stand) for change in drawn]
         flying += [change.of(own.flying) for change in drawn if own.flying is not None]
-        moved.append(_missed(base, drawn))
+        moved.append(_missed(base, misses[i], drawn))
     table = outcomes(stands, flying, _rail(plan))
-    counts = [len(range(i, draws, len(bases))) for i in range(len(bases))]
     missed = np.repeat([[own.get(name, 0.0) for name in QUANTITIES] for own in misses], counts, axis=0)
     noise = np.random.default_rng([seed, 1]).standard_normal(table.shape)
     return np.asarray(table * np.exp(np.concatenate(moved) + LASTS * missed * noise))
 
 
-def _missed(base: Base, drawn: Sequence[Change]) -> Array:
+def _missed(base: Base, misses: Mapping[str, float], drawn: Sequence[Change]) -> Array:
     """ln(measured/model) of a test [-], (draws, quantities), by a model with the same errors as each draw: what is off
-    in the test that was fired as in the next one is off in no difference between them. Where the drawn engine does not
-    run, or nothing was measured, that is of the quantity as it is, or nothing."""
-    plain, found = misses_of(base), _fired(base, drawn)
+    in the test that was fired as in the next one is off in no difference between them.
+
+    ``misses``: the same of the model as it is, which stands for a drawn engine that does not run.
+    """
+    found = _fired(base, drawn)
     out = np.zeros(found.shape)
     for i, name in enumerate(QUANTITIES):
-        measured = base.measured.get(name)
-        if name in plain and measured is not None and measured.value:
+        if name in misses:
             good = np.isfinite(found[:, i]) & (found[:, i] > 0.0)
-            out[:, i] = np.where(good, log(measured.value) - np.log(np.where(good, found[:, i], 1.0)), plain[name])
+            measured = log(base.measured[name].value or 1.0)
+            out[:, i] = np.where(good, measured - np.log(np.where(good, found[:, i], 1.0)), misses[name])
     return out
 
 

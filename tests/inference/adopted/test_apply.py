@@ -70,7 +70,7 @@ def test_how_far_the_name_can_be_believed_is_in_the_file(root: Path) -> None:
     tried = {"rate": 50.0, "rest": 9.0, "noise": 0.002, "load": 8.0, "like": 30, "sure": 14, "right": 13}
     path = adopt(opened(root), filled(Diagnosis, {**NAMED, "tried_on": tried}))
     assert path.read_text(encoding="utf-8").splitlines()[2] == (
-        "# Of 14 statements at 0.9 or more on the 30 simulated tests most like this one 13 were right."
+        "# Of 14 statements above 0.9 on the 30 simulated tests most like this one 13 were right."
     )
 
 

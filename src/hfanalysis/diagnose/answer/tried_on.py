@@ -57,8 +57,8 @@ class Conditions:
 
 
 AVERAGE = 4
-"""Statements as good as the average that are counted with those of a world. Source: choice, as many as a world has
-itself; of one or two alone the worst world's share would be all or nothing."""
+"""Statements as good as the average that are counted with those of a world. Source: choice, more than the one to three
+that a world has itself, by which its share would be all or nothing."""
 
 WORDS = {
     "rate": ("samples a second", "", ".3g"),
@@ -72,20 +72,23 @@ WORDS = {
 @dataclass(frozen=True)
 class Row:
     """A simulated test: its ``world``, how it was taken, the probability of what was stated of it most surely, and
-    whether all that was stated at SET or more was right."""
+    whether all that was stated above SET was right."""
 
     world: str
     conditions: Conditions
     stated: float
     right: bool
 
+    @property
+    def sure(self) -> bool:
+        """Whether anything was stated surely."""
+        return self.stated > SET
+
 
 @lru_cache
 def rows() -> tuple[Row, ...]:
-    """All of them; none where there is no file yet."""
+    """All of them."""
     source = files("hfanalysis.diagnose.answer") / "worlds.json"
-    if not source.is_file():
-        return ()
     found = json.loads(source.read_text(encoding="utf-8"))["tests"]
     return tuple(
         Row(r["world"], Conditions(**{n: r[n] for n in WORDS}, lacks=tuple(r["lacks"])), r["stated"], r["right"])
@@ -116,12 +119,10 @@ def tried_on(conditions: Conditions | None, known: Sequence[Row]) -> TriedOn | N
     was wrong in the world where that was most often so; None where its conditions are not known."""
     if conditions is None:
         return None
-    if not known:
-        return _told(conditions)
     ranges = {name: [row.conditions.numbers[name] for row in known] for name in WORDS}
     scales = {name: max(log(max(all_of) / min(all_of)), 1e-9) for name, all_of in ranges.items()}
     near = sorted(known, key=lambda row: row.conditions.far(conditions, scales))[:NEAREST]
-    sure = [row for row in near if row.stated >= SET]
+    sure = [row for row in near if row.sure]
     beyond = tuple(
         _beyond(name, conditions.numbers[name], min(all_of), max(all_of))
         for name, all_of in ranges.items()
@@ -130,15 +131,10 @@ def tried_on(conditions: Conditions | None, known: Sequence[Row]) -> TriedOn | N
     tried = {name for row in known for name in row.conditions.lacks}
     if alone := [name for name in conditions.lacks if name not in tried]:
         beyond = (*beyond, f"none without {listed(alone)} was tried")
-    return _told(conditions).but(
-        like=len(near), sure=len(sure), right=sum(row.right for row in sure),
-        outside=beyond, misled=_worst(known) if beyond else 0.0,
+    return TriedOn(
+        rate=conditions.rate, rest=conditions.rest, noise=conditions.noise, load=conditions.load, like=len(near),
+        sure=len(sure), right=sum(row.right for row in sure), outside=beyond, misled=_worst(known) if beyond else 0.0,
     )  # fmt: skip
-
-
-def _told(own: Conditions) -> TriedOn:
-    """How a test was taken, and nothing that it is compared with."""
-    return TriedOn(rate=own.rate, rest=own.rest, noise=own.noise, load=own.load, like=0, sure=0, right=0)
 
 
 WORSE = {"rate": (True, False), "rest": (True, False), "noise": (False, True), "load": (True, True)}
@@ -160,7 +156,7 @@ def _beyond(name: str, value: float, low: float, high: float) -> str:
 def _worst(known: Sequence[Row]) -> float:
     """Share [-] of sure statements that were wrong in the world in which that is largest, each world's counted with
     AVERAGE more that are wrong as often as those of all worlds."""
-    sure = [row for row in known if row.stated >= SET]
+    sure = [row for row in known if row.sure]
     if not sure:
         return 1.0
     wrong = sum(not row.right for row in sure) / len(sure)
@@ -172,10 +168,10 @@ def mixed(posterior: Mapping[str, float], misled: float) -> dict[str, float]:
     """The probabilities where evidence misleads in a share ``misled`` [-] of tests: there they are those that labels
     have before a test.
 
-    >>> mixed({"none": 0.0, "a": 1.0, "unknown": 0.0}, 0.2)
+    >>> {label: round(p, 3) for label, p in mixed({"none": 0.0, "a": 1.0, "unknown": 0.0}, 0.2).items()}
     {'none': 0.05, 'a': 0.92, 'unknown': 0.03}
     """
     names = max(sum(kind(label) == "named" for label in posterior), 1)
     before = {label: BEFORE[kind(label)] / (names if kind(label) == "named" else 1) for label in posterior}
     total = sum(before.values())
-    return {k: round((1.0 - misled) * p + misled * before[k] / total, 12) for k, p in posterior.items()}
+    return {k: (1.0 - misled) * p + misled * before[k] / total for k, p in posterior.items()}

@@ -134,7 +134,7 @@ def tried_sentences(product: Diagnosis) -> list[str]:
     if product.verdict == "none" or not found.sure:
         return []
     return [
-        f"Of {found.sure} statements at {SET:g} or more on the {found.like} simulated tests most like this one "
+        f"Of {found.sure} statements above {SET:g} on the {found.like} simulated tests most like this one "
         f"{found.right} were right."
     ]
 
