@@ -9,7 +9,7 @@ from pathlib import Path
 from hfanalysis.cli.exit_status import tell
 from hfanalysis.cli.perform import stage
 from hfanalysis.cli.request import Request
-from hfanalysis.diagnose.answer.words import tried_sentences
+from hfanalysis.diagnose.answer.tried_on import tried_sentences
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.effects.learnt import STATES
 from hfanalysis.errors import AbsentError, InputError

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.products.filled import filled
 
-from hfanalysis.diagnose.answer.tried_on import NEAREST, Conditions, Row, mixed, rows, tried_on
-from hfanalysis.diagnose.answer.words import tried_sentences
+from hfanalysis.diagnose.answer.tried_on import NEAREST, Conditions, Row, mixed, rows, tried_on, tried_sentences
 from hfanalysis.products.diagnosis import Diagnosis, TriedOn
 
 SLOW, FAST = Conditions(50.0, 20.0, 2e-3, 8.0), Conditions(2000.0, 0.5, 2e-3, 8.0)

@@ -19,7 +19,7 @@ from hfanalysis.diagnose.answer.posterior import BEFORE, SET, kind
 from hfanalysis.inference.gap import noise_of
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
-from hfanalysis.products.diagnosis import TriedOn
+from hfanalysis.products.diagnosis import Diagnosis, TriedOn
 from hfanalysis.wording.numbers import listed
 
 CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "p_purge", "m_tank")
@@ -175,3 +175,22 @@ def mixed(posterior: Mapping[str, float], misled: float) -> dict[str, float]:
     before = {label: BEFORE[kind(label)] / (names if kind(label) == "named" else 1) for label in posterior}
     total = sum(before.values())
     return {k: (1.0 - misled) * p + misled * before[k] / total for k, p in posterior.items()}
+
+
+def tried_sentences(product: Diagnosis) -> list[str]:
+    """How far the answer can be believed on such a stand."""
+    found = product.tried_on
+    if found is None:
+        return []
+    if found.outside:
+        return [
+            f"This test is outside of the simulated ones on which the diagnosis was tried: {'; '.join(found.outside)}.",
+            f"So every probability counts that in the worst of those worlds {100.0 * found.misled:.0f} % of sure "
+            "statements were wrong.",
+        ]
+    if product.verdict == "none" or not found.sure:
+        return []
+    return [
+        f"Of {found.sure} statements above {SET:g} on the {found.like} simulated tests most like this one "
+        f"{found.right} were right."
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hfanalysis.diagnose.answer.posterior import SET, poor_fit
+from hfanalysis.diagnose.answer.tried_on import tried_sentences
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.effects.learnt import STATES
 from hfanalysis.inference.unknowns import kind_of
@@ -118,25 +119,6 @@ def story(product: Diagnosis) -> list[str]:
         out += [f"It is not {name}." for name in not_it(product)]
     out += [f"What would decide: {text}." for text in product.decisive_measurements]
     return out
-
-
-def tried_sentences(product: Diagnosis) -> list[str]:
-    """How far the answer can be believed on such a stand."""
-    found = product.tried_on
-    if found is None:
-        return []
-    if found.outside:
-        return [
-            f"This test is outside of the simulated ones on which the diagnosis was tried: {'; '.join(found.outside)}.",
-            f"So every probability counts that in the worst of those worlds {100.0 * found.misled:.0f} % of sure "
-            "statements were wrong.",
-        ]
-    if product.verdict == "none" or not found.sure:
-        return []
-    return [
-        f"Of {found.sure} statements above {SET:g} on the {found.like} simulated tests most like this one "
-        f"{found.right} were right."
-    ]
 
 
 def learnt_sentences(product: Diagnosis) -> list[str]:
