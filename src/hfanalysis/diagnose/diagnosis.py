@@ -285,15 +285,21 @@ def _errors(candidate: Candidate) -> FormError:
 CALLED = {"polytropic_exponent": "m"}
 """What people call a constant that has another name in the model."""
 
+UNITS = {
+    "a": "m/s (kg/m^2/s)^-n", "area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K",
+    "volume": "m^3", "fuel_mass": "kg", "grain_length": "m", "outer_radius": "m", "fuel_density": "kg/m^3",
+    "dead_volume": "m^3", "throat_area": "m^2", "exit_area": "m^2",
+}  # fmt: skip
+"""Of constants, where they have one."""
+
 
 def _constants(found: Naming, verdict: Verdict) -> Constants:
     """The base model's constants as fitted without and with the effects; m above all."""
-    units = {"a": "m/s (kg/m^2/s)^-n", "area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K"}
     out: dict[str, dict[str, Quantity]] = {}
     for arm, fitted in (("without", found.base.fit), ("with", verdict.chosen.fit)):
         values, stds = fitted.values, fitted.stds
         out[arm] = {
-            CALLED.get(n, n): Quantity(values[n], units.get(n, ""), stds[n])
+            CALLED.get(n, n): Quantity(values[n], UNITS.get(n, ""), stds[n])
             for n in values
             if "." not in n and not n.startswith(DEPARTURE)
         }

@@ -83,9 +83,9 @@ class ShownByChannels:
     signs: tuple[Sign, ...]
 
     @property
-    def drift(self) -> bool:
-        """Whether the thrust cell does not come back to its zero."""
-        return any(found.kind in SHIFTS for found in self.wrong)
+    def disagree(self) -> bool:
+        """Whether thrust and chamber pressure do not go together."""
+        return any(found.kind in FACTORS for found in self.wrong)
 
     @property
     def sentences(self) -> list[str]:
@@ -103,7 +103,7 @@ def shown(subject: Subject) -> ShownByChannels:
 
 
 def _concerns(found: Finding) -> bool:
-    """Whether a finding is one of what a diagnosis has names for: a cell's drift; thrust and p_c A_t that disagree."""
+    """Whether a finding is of what a model is compared with: a thrust cell's zero; thrust and p_c A_t that disagree."""
     if found.verdict == HEALTHY or found.overruled:
         return False
     shifted = found.kind in SHIFTS and "thrust" in found.channels and found.cure is None

@@ -4,39 +4,36 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hfanalysis.diagnose.answer.plausible import judged, size_of
 from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.model_free import SHIFTS, ShownByChannels, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.subject import Subject
 from hfanalysis.performance.thrust import thrust_of
-from hfanalysis.products.diagnosis import NO_TIME, ClosedFraction, Compared, Diagnosis, Gap, NamedEffect, Place
+from hfanalysis.products.diagnosis import NO_TIME, ClosedFraction, Compared, Diagnosis, Gap, Place
 from hfanalysis.products.health import KINDS, Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
-
-DRIFT = "load_cell_drift"
 
 
 def channels_alone(subject: Subject, why: str) -> Diagnosis:
     """The product of a diagnosis without a model. Raises AbsentError where the channels show nothing wrong either.
 
-    A thrust cell that does not come back to its zero has drifted, whatever the engine did. That thrust and chamber
-    pressure disagree says that one of them, or the nozzle, is not what is stated, and not which. What tank and purge
-    line show is in ``diagnose.model_free``. Nothing tells which of several explains most: a drift comes first, for its
-    size is known, and nothing else is added to the model.
+    A thrust cell that does not come back to its zero has shifted: that is the sensor's health, and is told as such; by
+    itself it is nothing that the model lacks. That thrust and chamber pressure disagree says that one of them, or the
+    nozzle, is not what is stated, and not which. What tank and purge line show is in ``diagnose.model_free``. Nothing
+    tells which of several explains most, and nothing is added to the model.
     """
     seen = shown(subject)
-    if not seen.wrong and not seen.signs:
-        raise AbsentError(f"{why}; its channels, by themselves, show nothing wrong")
+    if not seen.disagree and not seen.signs:
+        of_cell = "".join(f"; {sentence[:1].lower()}{sentence[1:]}" for sentence in map(str, seen.sentences))
+        raise AbsentError(f"{why}; its channels, by themselves, show nothing that a model would lack{of_cell}")
     stated = _stated(seen)
-    effects = (_drift(subject),) if seen.drift else ()
     names = [name for name in (*stated.posterior, *stated.partners) if name not in ("none", "unknown")]
     channels = {c for f in seen.wrong for c in f.channels} | {s.channel for s in seen.signs}
     return Diagnosis(
         verdict=stated.verdict,
-        effects=effects,
+        effects=(),
         set90=stated.set90,
         posterior=stated.posterior,
         partners=stated.partners,
@@ -46,7 +43,7 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
         twins=(),
         not_it=(),
         decisive_measurements=tuple(f"{effect(name).plain_name}: {effect(name).decisive}" for name in names),
-        plausibility={row.name: row.plausibility for row in effects},
+        plausibility={},
         compared=Compared(channels=tuple(sorted(channels))),
         notes=(
             "only what the channels show by themselves was judged; no probability of other effects was formed; "
@@ -57,7 +54,7 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
         runtime_s=NO_TIME,
         seed=0,
         sentences=(*seen.sentences, text("No more can be said without a model to compare with: {why}.", why=why)),
-        called={name: effect(name).plain_name for name in dict.fromkeys([*names, *(row.name for row in effects)])},
+        called={name: effect(name).plain_name for name in dict.fromkeys(names)},
     )
 
 
@@ -76,7 +73,7 @@ class _Stated:
 
 def _stated(seen: ShownByChannels) -> _Stated:
     sure = _sure()
-    groups = [(DRIFT,)] * seen.drift + [sign.names for sign in seen.signs]
+    groups = [sign.names for sign in seen.signs]
     if not groups:
         return _Stated("unknown", ("unknown",), {"unknown": sure, "none": 1.0 - sure}, {})
     even = {name: sure / len(group) for group in groups for name in group}
@@ -90,18 +87,6 @@ def _stated(seen: ShownByChannels) -> _Stated:
 def _sure() -> float:
     """As probable as anything is."""
     return 1.0 - scale().misled
-
-
-def _drift(subject: Subject) -> NamedEffect:
-    size = _off_zero(subject)
-    return NamedEffect(
-        name=DRIFT,
-        probability=_sure(),
-        equation="sensor",
-        meaning=effect(DRIFT).meaning,
-        parameters={"drift": size},
-        plausibility=judged(size_of(effect(DRIFT).at(drift=size.value or 0.0))),
-    )
 
 
 def _off_zero(subject: Subject) -> Quantity:

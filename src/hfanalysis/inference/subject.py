@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hfanalysis.engine.unsteady import Engine
 from hfanalysis.inference.fitting.departures import with_departures
 from hfanalysis.inference.fitting.fade import with_abrupt_end
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.inference.full_run import run_full
+from hfanalysis.inference.half_known import with_ranges
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
 from hfanalysis.products.calibration import Calibration
@@ -23,7 +25,7 @@ class Subject:
     """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated.
 
     The calibration is None where none could be had; ``notes`` say what stands for a missing channel, ``found`` what its
-    channels' health tells.
+    channels' health tells. ``start``: the engine that a fit starts from where it is not the calibrated one.
     """
 
     log: TestLog
@@ -32,6 +34,7 @@ class Subject:
     definition: TestDefinition
     notes: tuple[str, ...] = ()
     found: tuple[Finding, ...] = ()
+    start: Engine | None = None
 
     def observed(self) -> Observed:
         """What is compared."""
@@ -42,10 +45,11 @@ class Subject:
         return {"n2_purge": _purge(self)}
 
     def hypothesis(self) -> Hypothesis:
-        """The base model with its constants free."""
+        """The base model with its constants free, those among them that are stated as ranges."""
         assert self.calibration is not None
-        full = run_full(self.log, self.segments, self.calibration, self.definition)
-        return base_hypothesis(full.engine, self.calibration, self.definition.model.conventions != "report")
+        engine = self.start or run_full(self.log, self.segments, self.calibration, self.definition).engine
+        base = base_hypothesis(engine, self.calibration, self.definition.model.conventions != "report")
+        return with_ranges(base, self.definition)
 
     def compared(self, any_table: bool = True) -> tuple[Hypothesis, Observed]:
         """The base model and the observations, with what only the model says of these.

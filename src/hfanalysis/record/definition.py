@@ -44,7 +44,7 @@ from hfanalysis.record.sections import (
     StandSection,
     Tank,
 )
-from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
+from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_FITS, SPREADS_OF_TESTS, for_fits_alone, unused
 from hfanalysis.units import Value, near
 
 __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", "TimeSpec", "Value", "find_definition",
@@ -204,7 +204,8 @@ def load_definition(path: Path) -> TestDefinition:
     """The test.toml at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
     stated = _with_fuel_left(validate(Statements, {"schema": None, **content}, path), path)
-    idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS.__contains__, "test.toml")
+    idle = unused(stated, OF_TESTS, (SPREADS_OF_TESTS | SPREADS_OF_FITS).__contains__, "test.toml")
+    idle = (*idle, *for_fits_alone(stated, "test.toml"))
     digest, warnings = hashlib.sha256(raw).hexdigest(), (*_odd_names(stated.channels), *idle)
     definition = TestDefinition(**vars(stated), path=path, sha256=digest, warnings=warnings)
     _check_folder(definition)

@@ -41,21 +41,40 @@ SPREADS_OF_TESTS = frozenset({
 """Values of test.toml whose +/- goes into intervals; that of an engine file goes into none. Evidence:
 test_unused.py."""
 
+SPREADS_OF_FITS = frozenset({
+    "grain.length", "grain.outer_radius", "grain.density", "chamber.pre_volume", "chamber.post_volume",
+    "nozzle.exit_radius",
+})  # fmt: skip
+"""Values of test.toml whose +/- is a range for the fits of all channels together alone: a diagnosis, and the constants
+after an effect is adopted. Evidence: tests/inference/test_half_known.py."""
+
 
 def unused(stated: Section, keys: Container[str], used: Callable[[str], bool], where: str) -> tuple[str, ...]:
     """One line that names what a file states and nothing uses, or none; ``where`` names the file.
 
     ``keys``: those that nothing uses; ``used``: whether the +/- of a key is.
     """
-    given = list(_given(stated, ""))
-    idle = [_in_words(name) for name, _ in given if name in keys]
-    loose = [
-        _in_words(name)
-        for name, value in given
-        if isinstance(value, Value) and value.std is not None and not (used(name) or name in keys)
-    ]
+    idle = [_in_words(name) for name, _ in _given(stated, "") if name in keys]
+    loose = _spreads(stated, lambda name: not (used(name) or name in keys))
     said = [*([", ".join(idle)] if idle else []), *([f"the +/- of {', '.join(loose)}"] if loose else [])]
     return (f"{where}: accepted, but not used yet: {'; '.join(said)}",) if said else ()
+
+
+def for_fits_alone(stated: Section, where: str) -> tuple[str, ...]:
+    """One line that names the +/- that goes into the fits of all channels together and into nothing else, or none."""
+    loose = _spreads(stated, SPREADS_OF_FITS.__contains__)
+    if not loose:
+        return ()
+    return (f"{where}: the +/- of {', '.join(loose)} is a range for hfa diagnose, and in no interval of a calibration",)
+
+
+def _spreads(stated: Section, asked: Callable[[str], bool]) -> list[str]:
+    """Keys that are ``asked`` for, of which a +/- is stated, in words."""
+    return [
+        _in_words(name)
+        for name, value in _given(stated, "")
+        if isinstance(value, Value) and value.std is not None and asked(name)
+    ]
 
 
 def _given(section: Section, above: str) -> Iterator[tuple[str, Any]]:

@@ -28,6 +28,14 @@ _CONSTANTS = {
     "loss_factor": "feed loss coefficient",
     "oxidizer_mass": "oxidizer loaded",
     "temperature": "tank temperature at the start",
+    "volume": "volume of the tank",
+    "fuel_mass": "fuel loaded",
+    "grain_length": "length of the grain",
+    "outer_radius": "outer radius of the grain",
+    "fuel_density": "density of the fuel",
+    "dead_volume": "chamber's volume beside the port",
+    "throat_area": "area of the throat",
+    "exit_area": "area of the exit",
 }
 _ARMS = {
     "same": ("the same data", "there was no misfit beyond the noise"),

@@ -46,6 +46,7 @@ def run(context: Context) -> None:
 
 def subject_of(context: Context) -> Subject:
     """What the products of a test give a diagnosis to work on; without a calibration where none can be had."""
+    from hfanalysis.diagnose.half_known import with_start
     from hfanalysis.diagnose.without_run_line import NOTE, lumped_calibration
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.calibration import Calibration
@@ -61,7 +62,8 @@ def subject_of(context: Context) -> Subject:
             found = lumped_calibration(log, segments, context.definition)
             return Subject(log, segments, found, context.definition, (NOTE,), told)
     base = None if "calibrate" in context.absent else context.read(Calibration, BASE + Calibration.file)
-    return Subject(log, segments, base, context.definition, (), told)
+    subject = Subject(log, segments, base, context.definition, (), told)
+    return with_start(subject) if base is not None else subject
 
 
 def _other(context: Context) -> OtherTest | None:

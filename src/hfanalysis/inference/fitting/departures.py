@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.fitting.hypothesis import DEPARTURE, OF_LAW, Free, Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import port_radius, predict, readings
@@ -22,12 +23,16 @@ MOST = 2.0
 is missing, and a run with one deviation does not tell what ten would do."""
 
 
-def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
-    """The hypothesis with the departures free, and the observations with what these add where it starts.
+def with_departures(
+    hypothesis: Hypothesis, observed: Observed, start: Array | None = None
+) -> tuple[Hypothesis, Observed]:
+    """The hypothesis with the departures free, and the observations with what these add at ``start`` (parameters,), in
+    prior standard deviations: where it starts by default.
 
     One that cannot be run there is left as it is: its fit will say so.
     """
-    start, engine = np.zeros(hypothesis.size), hypothesis.engine
+    engine = hypothesis.engine
+    start = np.zeros(hypothesis.size) if start is None else start
     tables = {
         f"{DEPARTURE}table: {by.name}": replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES
     }
