@@ -23,7 +23,7 @@ from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.practice import diagnosed
 from benchmarks.studies import one_thread, percent, put
-from simulated.worlds.plan import SETS, Test, plan
+from simulated.worlds.plan import OF_WORLDS, SETS, Test, plan
 
 CACHE = Path(__file__).resolve().parents[1] / ".cache" / "worlds"
 SURE = 0.9
@@ -229,6 +229,8 @@ def main() -> int:
     tests = [t for t in tests if not asked.only or t.id in asked.only.split(",")]
     todo = [t for t in tests if not fresh(t, root, digest)]
     started = perf_counter()
+    from benchmarks.worlds_table import table
+
     from hfanalysis.campaign.cluster import Cluster
 
     with Cluster(asked.jobs) as cluster:
@@ -242,12 +244,12 @@ def main() -> int:
             print(f"{done}/{len(todo)} {name} {seconds:.0f} s {mark}: {'+'.join(one.hidden) or 'nothing'} -> {said}",
                   file=sys.stderr, flush=True)  # fmt: skip
     cases = scored(tests, root)
-    lines = [*figures(cases), "", *listing(cases)]
+    lines = [*(table(cases) if asked.set in OF_WORLDS else figures(cases)), "", *listing(cases)]
     print("\n".join(lines))
     if todo:
         print(f"\n{len(todo)} tests in {(perf_counter() - started) / 60.0:.1f} minutes", file=sys.stderr)
     if asked.write:
-        put(asked.write, "worlds", lines)
+        put(asked.write, f"worlds {asked.set}" if asked.set in OF_WORLDS else "worlds", lines)
     if asked.tried:
         asked.tried.write_text(json.dumps({"set": asked.set, "tests": tried(cases)}, indent=1) + "\n", encoding="utf-8")
     return 0

@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 LAWS = 17
 """Indices. The last four are other closures of hidden effects: 1 where the world has them."""
 
+SUDDEN = 1e-6
+"""Seconds that are none."""
+
 FADES = (0.006, 1.0)
 """Seconds in which what burns at the end of the fuel is gone, from and to; in logarithms."""
 
@@ -51,6 +54,13 @@ class World:
         laws = self.laws.copy()
         laws[[TAIL, MIXING]] = burning, cooling
         return replace(self, laws=laws)
+
+
+def plain() -> World:
+    """No law but those of the blind generator; the flame ends with the fuel."""
+    laws = np.zeros(LAWS)
+    laws[[TAIL, MIXING]] = SUDDEN
+    return World(laws, "coolprop", (0.0, 0.0), {"all": "plain"})
 
 
 def draw(rng: np.random.Generator) -> World:

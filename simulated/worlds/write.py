@@ -20,11 +20,14 @@ from simulated.blind.build import Built
 from simulated.blind.effects import EFFECTS, Hidden, drawn, named_shape
 from simulated.blind.kernel import STEP
 from simulated.blind.plan import Case
-from simulated.blind.stand import Stand
+from simulated.blind.stand import Histories, Stand
 from simulated.blind.write import column, document
-from simulated.worlds import engines, laws, loggers
-from simulated.worlds.hidden import observed, sized
+from simulated.worlds import engines, laws, loggers, reference
+from simulated.worlds.hidden import distorted, observed, sized, to_rivals
 from simulated.worlds.plan import SETS, Test, plan
+
+RATES = 30
+"""Instants at which a regression rate is written down."""
 
 
 def write_test(test: Test, root: Path, fade: tuple[float, float] | None = None) -> None:
@@ -32,24 +35,30 @@ def write_test(test: Test, root: Path, fade: tuple[float, float] | None = None) 
 
     ``fade``: how long what is left burns on and how slowly the chamber turns cold [s], instead of what is drawn.
     """
-    rng = np.random.default_rng(test.seed)
-    world, logger = laws.draw(rng), loggers.LOGGERS[test.logger]
+    rng, logger = np.random.default_rng(test.seed), loggers.LOGGERS[test.logger]
+    if test.of_reference:
+        world = laws.plain()
+    else:
+        world = laws.draw(rng if test.laws is None else np.random.default_rng(test.laws))
     if fade is not None:
         world = world.fading(*fade)
     stand = engines.drawn(rng, test.engine, test.end, world)
     with_ = loggers.drawn(rng, logger, stand)
     sizes = [sized(stand, world, drawn(EFFECTS[n], rng), test.target, logger, with_) for n in test.effects]
     case = Case(test.id, test.kind, test.effects, test.target, test.logger, test.seed, test.seed)
-    made = fired(rng, case, stand, world, tuple(h for h, _ in sizes), logger, with_)
+    made = fired(rng, case, stand, world, tuple(h for h, _ in sizes), logger, with_, test.of_reference)
     true = made.true
+    tables = world.tank_table(), world.gas_table()
     put(made, {
         "id": test.id, "kind": test.kind, "engine": test.engine, "logger": test.logger, "end": test.end,
+        "world": test.world,
         "effects": {h.effect.name: {"strength": h.strength, "unit": h.effect.unit, "d_prime": d,
+                                    "to_rivals": to_rivals(stand, world, h, logger, with_, tables),
                                     "inside_library": h.effect.inside, "equations": list(h.effect.equations),
                                     "shape": named_shape(h.shape)} for h, d in sizes},
         "laws": world.names, "fade": [float(world.laws[i]) for i in (laws.TAIL, laws.MIXING)],
         "t_v": true.t_v, "t_fuel_out": true.t_fuel_out if np.isfinite(true.t_fuel_out) else None,
-        "truth": constants(stand),
+        "truth": constants(stand), "run": of_run(stand, true),
     }, root)  # fmt: skip
 
 
@@ -58,12 +67,30 @@ def constants(stand: Stand) -> dict[str, float]:
     return {"C_i": stand.C_i, "K_loss": stand.K_loss, "m": stand.m, "a": stand.a, "n": stand.n}
 
 
+def of_run(stand: Stand, true: Histories) -> dict[str, object]:
+    """What a test has whatever its laws are: oxidizer gone and left at the end of the liquid [kg], and regression [m/s]
+    by oxidizer flux [kg/(m^2 s)] at some instants of the fire."""
+    left = float(true.trace(s.M_TANK)[int(true.t_v / STEP)])
+    radius, flow = true.trace(s.RADIUS), true.trace(s.FLOW)
+    flux, rate = flow / (np.pi * radius**2), np.gradient(radius, STEP)
+    burnt = min(stand.closing, true.t_fuel_out if np.isfinite(true.t_fuel_out) else np.inf) / STEP
+    at = np.linspace(0.05 * burnt, 0.98 * burnt, RATES).astype(int)
+    return {
+        "gone_at_t_v": stand.mass - left, "left_at_t_v": left,
+        "flux": flux[at].tolist(), "rate": rate[at].tolist(),
+    }  # fmt: skip
+
+
 def fired(
     rng: np.random.Generator, case: Case, stand: Stand, world: laws.World, hidden: tuple[Hidden, ...],
-    logger: loggers.Logger, with_: loggers.Sensors,
+    logger: loggers.Logger, with_: loggers.Sensors, of_reference: bool = False,
 ) -> Built:  # fmt: skip
-    """A test as it went, its log, and what was weighed before and after."""
-    channels, true = observed(stand, world, hidden, (world.tank_table(), world.gas_table()))
+    """A test as it went, its log, and what was weighed before and after; ``of_reference``: run by that solver."""
+    if of_reference:
+        true = reference.histories(stand)
+        channels = distorted(true, hidden)
+    else:
+        channels, true = observed(stand, world, hidden, (world.tank_table(), world.gas_table()))
     log = loggers.written(rng, stand, true, channels, logger, with_)
     left = max(stand.fuel_mass - float(true.trace(s.FUEL).sum()) * STEP, 0.0)
     weighed = {"oxidizer_mass": stand.mass + float(rng.normal(0.0, 0.01)),

@@ -24,31 +24,23 @@ from simulated.worlds.write import write_test
 
 from hfanalysis.record.definition import load_definition
 
-SUDDEN = 1e-6
 RATE_OF_RUNS = 1000.0
 SIZES = {laws.TAIL: 0.1, laws.MIXING: 0.3, laws.ZONE_LAG: 0.002, laws.OPENING: 0.03, laws.THRUST_LOSS: 0.01}
 
 
-def plain_world() -> laws.World:
-    """No law but those of the blind generator; the flame ends with the fuel."""
-    values = np.zeros(laws.LAWS)
-    values[[laws.TAIL, laws.MIXING]] = SUDDEN
-    return laws.World(values, "coolprop", (0.0, 0.0))
-
-
 def with_law(which: int, size: float) -> laws.World:
-    values = plain_world().laws.copy()
+    values = laws.plain().laws.copy()
     values[which] = size
-    return replace(plain_world(), laws=values)
+    return replace(laws.plain(), laws=values)
 
 
 @pytest.fixture(scope="module")
 def stand() -> blind.Stand:
-    return drawn(np.random.default_rng(3), "2 kN", "late", plain_world())
+    return drawn(np.random.default_rng(3), "2 kN", "late", laws.plain())
 
 
 def test_without_laws_the_engine_is_that_of_the_blind_generator(stand: blind.Stand) -> None:
-    here, there = simulated(stand, plain_world()), blind.simulate(stand)
+    here, there = simulated(stand, laws.plain()), blind.simulate(stand)
     assert here.t_v == pytest.approx(there.t_v, abs=2e-3)
     assert here.t_fuel_out == pytest.approx(there.t_fuel_out, abs=2e-3)
     both = min(here.t_v, here.t_fuel_out) - 0.1
@@ -60,27 +52,27 @@ def test_without_laws_the_engine_is_that_of_the_blind_generator(stand: blind.Sta
 @pytest.mark.parametrize("which", range(laws.LAWS - 4))
 def test_every_law_shows(stand: blind.Stand, which: int) -> None:
     size = SIZES.get(which, 0.05)
-    plain, other = (simulated(stand, world).traces[:, :6] for world in (plain_world(), with_law(which, size)))
+    plain, other = (simulated(stand, world).traces[:, :6] for world in (laws.plain(), with_law(which, size)))
     assert np.abs(other - plain).max(axis=0).max() > 0.0
     spread = np.ptp(plain, axis=0)
-    early = slice(100, int(1e3 * 0.6 * simulated(stand, plain_world()).t_v))
+    early = slice(100, int(1e3 * 0.6 * simulated(stand, laws.plain()).t_v))
     assert (np.abs(other - plain)[early] < 0.05 * spread).all()
 
 
 def test_other_closures_of_what_is_hidden_are_none_at_strength_zero(stand: blind.Stand) -> None:
-    everything = plain_world()
+    everything = laws.plain()
     everything.laws[laws.DYER :] = 1.0
-    assert (simulated(stand, everything).traces == simulated(stand, plain_world()).traces).all()
+    assert (simulated(stand, everything).traces == simulated(stand, laws.plain()).traces).all()
     for name in ("injector_two_phase", "injector_choked_vapor", "grain_pressure_regression", "fuel_sliver"):
         effect = EFFECTS[name]
         shape = dict.fromkeys(effect.shape, 800000.0)
         hidden = slots_of((Hidden(effect, 0.3 * effect.most, shape),))
-        one, other = (simulated(stand, world, hidden).traces for world in (plain_world(), everything))
+        one, other = (simulated(stand, world, hidden).traces for world in (laws.plain(), everything))
         assert np.abs(one - other).max() > 0.0
 
 
 def test_a_chamber_without_a_flame_turns_cold_as_slowly_as_its_law_says() -> None:
-    early = drawn(np.random.default_rng(5), "2 kN", "early", plain_world())
+    early = drawn(np.random.default_rng(5), "2 kN", "early", laws.plain())
 
     def left(mixing: float) -> float:
         run = simulated(early, with_law(laws.MIXING, mixing))
@@ -94,7 +86,7 @@ def test_a_chamber_without_a_flame_turns_cold_as_slowly_as_its_law_says() -> Non
 
 
 def test_the_other_table_is_another_nitrous_oxide() -> None:
-    esdu = replace(plain_world(), properties="esdu").tank_table()
+    esdu = replace(laws.plain(), properties="esdu").tank_table()
     off = esdu[nitrous.P] / nitrous.table()[nitrous.P] - 1.0
     assert 1e-4 < np.abs(off[np.arange(off.size) > 4000]).max() < 0.02
 
@@ -102,7 +94,7 @@ def test_the_other_table_is_another_nitrous_oxide() -> None:
 @pytest.mark.parametrize("logger", LOGGERS)
 def test_logs_are_as_their_logger_writes_them(stand: blind.Stand, logger: str) -> None:
     rng, of = np.random.default_rng(1), LOGGERS[logger]
-    run = simulated(stand, plain_world())
+    run = simulated(stand, laws.plain())
     log = written(rng, stand, run, run.traces[:, :6], of, drawn_sensors(rng, of, stand))
     steps = np.diff(log.time)
     assert np.median(steps) == pytest.approx(1.0 / of.rate, rel=0.1)

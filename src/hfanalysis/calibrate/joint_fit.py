@@ -4,8 +4,9 @@ One after the other, as without effects, C_i takes the load as it was stated, m 
 n a chamber behind both. What an effect was found with is another set: its size and the constants were fitted at once.
 With constants found one by one beside it the engine misses the end of the liquid by tenths of a second, and m takes
 what is left over. Here the constants are found as the diagnosis finds them on another test: the effects are held, and
-everything else is free, but for the table of nitrous oxide: the engine that these constants are for runs by the one
-that it has.
+everything else is free, but for the table of nitrous oxide and the laws: the engine that these constants are for runs
+by those that it has. What they may be off by counts them, and the effects
+(:mod:`hfanalysis.calibrate.joint_errors`).
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.beside_report import joint_of
 from hfanalysis.calibrate.conditions import conditioned, conditions
 from hfanalysis.calibrate.evidence import burn_time_of
+from hfanalysis.calibrate.joint_errors import errors_about
 from hfanalysis.calibrate.joint_refused import reasons
 from hfanalysis.calibrate.regression_verdict import judge_regression, rate_at
 from hfanalysis.calibrate.tank import PEAK_OVER
@@ -78,17 +80,22 @@ def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Cal
         raise AbsentError("the engine's model with the adopted effects cannot be run")
     if why := reasons(found, observed, one_by_one, subject.definition):
         raise AbsentError("; ".join(why) + ". With these effects alone the model is far from this test: diagnose it")
-    return _Constants(subject, observed, found, one_by_one).product()
+    try:
+        return _Constants(subject, observed, found, one_by_one, errors_about(found, observed, effects)).product()
+    except ArithmeticError as error:
+        raise AbsentError(f"the engine's model with the adopted effects cannot be run to its end: {error}") from error
 
 
 @dataclass(frozen=True)
 class _Constants:
-    """A fit of all constants, as quantities of a calibration."""
+    """A fit of all constants, as quantities of a calibration; ``errors``: second moments about it, in standard
+    deviations of the priors."""
 
     subject: Subject
     observed: Observed
     found: Candidate
     one_by_one: Calibration
+    errors: Array
 
     def product(self) -> Calibration:
         """The content of calibration.json."""
@@ -119,7 +126,7 @@ class _Constants:
         """What may move, where it is, and its standard deviation, both in those of its prior."""
         place = self._place(name)
         fit = self.found.fit
-        return fit.hypothesis.free[place], float(fit.x[place]), float(np.sqrt(fit.covariance[place, place]))
+        return fit.hypothesis.free[place], float(fit.x[place]), float(np.sqrt(self.errors[place, place]))
 
     def _place(self, name: str) -> int:
         return [free.name for free in self.found.fit.hypothesis.free].index(name)
@@ -140,7 +147,7 @@ class _Constants:
             f.slope(float(fit.x[i])) / (f.value(float(fit.x[i])) if f.name == "a" else 1.0)
             for f, i in zip(free, places, strict=True)
         ]
-        covariance = np.asarray(fit.covariance)[np.ix_(places, places)] * np.outer(slopes, slopes)
+        covariance = self.errors[np.ix_(places, places)] * np.outer(slopes, slopes)
         return joint_of(tuple(TOGETHER[f.name] for f in free), covariance)
 
     def _of_tank(self) -> dict[str, Quantity]:
@@ -187,8 +194,11 @@ class _Constants:
         }
 
     def _followed(self, engine: Engine) -> Array:
-        """DERIVED of an engine's burn [SI]; NaN where its liquid does not end."""
-        burnt = burn(engine, longest=LONGEST_BURN)
+        """DERIVED of an engine's burn [SI]; NaN where it cannot be run, or its liquid does not end."""
+        try:
+            burnt = burn(engine, longest=LONGEST_BURN)
+        except (ValueError, ArithmeticError):
+            return np.full(len(DERIVED), np.nan)
         if burnt.liquid_out is None:
             return np.full(len(DERIVED), np.nan)
         time, mass, flow = burnt.time, burnt.state("tank_mass"), burnt.output("oxidizer_flow")
@@ -201,14 +211,14 @@ class _Constants:
 
     def _spread(self, values: Array) -> Array:
         fit = self.found.fit
-        steps = PROBE_STEP * np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+        steps = PROBE_STEP * np.sqrt(np.maximum(np.diag(self.errors), 0.0))
         slopes = np.zeros((values.size, steps.size))
         for i, step in enumerate(steps.tolist()):
             if step > 0.0:
                 x = fit.x.copy()
                 x[i] += step
                 slopes[:, i] = (self._followed(fit.hypothesis.at(x)) - values) / step
-        return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", slopes, fit.covariance, slopes)))
+        return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", slopes, self.errors, slopes)))
 
     @cached_property
     def _covariance_of_law(self) -> Array:
@@ -217,7 +227,7 @@ class _Constants:
         free_n, x_n, _ = self._free("n")
         places = [self._place("a"), self._place("n")]
         scale = np.array([free_a.slope(x_a) / free_a.value(x_a), free_n.slope(x_n)])
-        return np.asarray(self.found.fit.covariance[np.ix_(places, places)] * np.outer(scale, scale))
+        return np.asarray(self.errors[np.ix_(places, places)] * np.outer(scale, scale))
 
     @cached_property
     def _reference_flux(self) -> float:

@@ -125,11 +125,12 @@ def test_what_is_fitted_together_is_true_and_the_engine_meets_every_channel(root
     }  # fmt: skip
     for name, value in true.items():
         assert abs(calibration[name]["value"] - value) < 4.0 * calibration[name]["std"], name
-        assert calibration[name]["std"] < 0.1 * value, name
+        assert calibration[name]["std"] < (0.4 if name == "a" else 0.15) * value, name  # a trades against n
     assert calibration["oxidizer_mass"]["value"] == 8.35  # as weighed
     rate = calibration["regression_rate_reference"]
     flux = calibration["regression"]["reference_flux"]["value"]
     assert rate["value"] == pytest.approx(stand.a * flux**stand.n, rel=0.01)
+    assert rate["std"] < 0.03 * rate["value"]
     events = [found["segments"][name] for name in ("t_v", "t_fuel_out")]
     with h5py.File(opened(root).out / "residuals.h5") as file:
         for channel in found["validation"]["gap"]["full"]:

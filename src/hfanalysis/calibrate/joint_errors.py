@@ -1,0 +1,66 @@
+"""What constants may be off by that were fitted together with adopted effects.
+
+The engine that they are for has one table of nitrous oxide, one law per equation and the effects as they were adopted.
+None of these is known so well. With all of them free (the effects' parameters by their priors, their courses, the
+table, and the laws, as a diagnosis takes them) the constants may move elsewhere, and by more. Their error about what
+is told is that of this fit, and the way to where it ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hfanalysis.arrays import Array
+from hfanalysis.engine.effect import Active
+from hfanalysis.inference.candidate import Bench, Candidate
+from hfanalysis.inference.fitting.courses import with_courses
+from hfanalysis.inference.fitting.departures import with_departures
+from hfanalysis.inference.fitting.fit import Fit, fit
+from hfanalysis.inference.fitting.hypothesis import Hypothesis, free_parameters
+from hfanalysis.inference.observations.observed import Observed
+
+STEPS, WITHIN = 10, 0.02
+"""Steps of that fit at most, and the change of its objective [natural log] below which it is done."""
+
+
+def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]) -> Array:
+    """Second moments (parameters, parameters) about the fitted constants, in standard deviations of their priors.
+
+    ``effects``: those of the fit that are adopted. Where the engine cannot be run with all of them free it is the
+    covariance of the fit itself.
+    """
+    told = found.fit
+    free = freed(found, observed, effects)
+    if free is None:
+        return told.covariance
+    size = told.x.size
+    off = free.x[:size] - told.x
+    return np.asarray(free.covariance[:size, :size] + np.outer(off, off))
+
+
+def freed(found: Candidate, observed: Observed, effects: Sequence[Active]) -> Fit | None:
+    """The fit gone on with all of that free; None where it cannot be run."""
+    told = found.fit
+    hypothesis, x = _with_parameters(told.hypothesis, told.x, effects)
+    for more in (with_departures, with_courses):
+        hypothesis, observed = more(hypothesis, observed, x)
+        x = np.pad(x, (0, hypothesis.size - x.size))
+    try:
+        return fit(hypothesis, Bench(observed).at(found.form), x, STEPS, WITHIN)
+    except (ValueError, ArithmeticError, np.linalg.LinAlgError):
+        return None
+
+
+def _with_parameters(hypothesis: Hypothesis, x: Array, effects: Sequence[Active]) -> tuple[Hypothesis, Array]:
+    """With the parameters of ``effects`` free, where they are."""
+    free, start = list(hypothesis.free), list(x)
+    for active in effects:
+        for one in free_parameters(active.effect):
+            value = active.named[one.name.partition(".")[2]]
+            place = one.least if one.shape == "positive" and value <= 0.0 else one.place(value)
+            free.append(one)
+            start.append(float(np.clip(place, one.least, one.most)))
+    return replace(hypothesis, free=tuple(free)), np.array(start)
