@@ -20,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study joint-study prediction-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick worlds-tried readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test tests test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study joint-study prediction-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds worlds-quick worlds-tried adopted-study readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -193,6 +193,12 @@ blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-n
 
 worlds-quick: $(STAMP) ## 60 tests on other engines, by other loggers and laws: docs/worlds-quick.md; goes on where stopped
 	$(BIN)/python -m benchmarks.worlds_quick --jobs 2 --write docs/worlds-quick.md $(FLAGS)
+
+worlds: $(STAMP) ## 364 tests of nine worlds that nothing was fitted to: docs/worlds-quick.md; an evening; goes on where stopped
+	$(BIN)/python -m benchmarks.worlds_quick --set scored --limit 1000 --jobs 2 --write docs/worlds-quick.md $(FLAGS)
+
+adopted-study: $(STAMP) ## constants with adopted effects beside the truth, on simulated tests of other worlds: docs/calibration.md
+	$(BIN)/python -m benchmarks.adopted --set calibration --limit 120 --write docs/calibration.md $(FLAGS)
 
 worlds-tried: $(STAMP) ## 72 tests of wider worlds: what the diagnosis says of where it was tried (worlds.json)
 	$(BIN)/python -m benchmarks.worlds_quick --set calibration --limit 72 --jobs 2 \

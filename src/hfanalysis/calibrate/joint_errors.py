@@ -1,9 +1,10 @@
 """What constants may be off by that were fitted together with adopted effects.
 
-The engine that they are for has one table of nitrous oxide, one law per equation and the effects as they were adopted.
-None of these is known so well. With all of them free (the effects' parameters by their priors, their courses, the
-table, and the laws, as a diagnosis takes them) the constants may move elsewhere, and by more. Their error about what
-is told is that of this fit, and the way to where it ends.
+The engine that they are for has one table of nitrous oxide, one law per equation, the characteristic velocity and the
+nozzle of equilibrium, and the effects as they were adopted. None of these is known so well. With all of them free (the
+effects' parameters by their priors, their courses, the table and the laws as a diagnosis takes them, and the levels of
+c* and thrust) the constants may move elsewhere, and by more. Their error about what is told is that of this fit, and
+the way to where it ends.
 """
 
 from __future__ import annotations
@@ -14,13 +15,22 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.courses import with_courses
 from hfanalysis.inference.fitting.departures import with_departures
 from hfanalysis.inference.fitting.fit import Fit, fit
-from hfanalysis.inference.fitting.hypothesis import Hypothesis, free_parameters
+from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis, free_parameters
 from hfanalysis.inference.observations.observed import Observed
+
+LEVELS = {"combustion_efficiency": ("deficit", 0.05), "nozzle_divergence": ("loss", 0.02)}
+"""Effects whose strength is the level of c* and of thrust, and its standard deviation [-]. Source: hybrids have 0.90 to
+0.98 of the c* of equilibrium, and nozzles lose up to 0.04 (Sutton and Biblarz, Rocket Propulsion Elements, chapters 3
+and 16). Evidence: in HF5 n follows the level of c* more than all else (docs/calibration.md)."""
+
+FARTHEST = 3.0
+"""Of those standard deviations, by which a level may be off."""
 
 STEPS, WITHIN = 10, 0.02
 """Steps of that fit at most, and the change of its objective [natural log] below which it is done."""
@@ -44,7 +54,7 @@ def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]
 def freed(found: Candidate, observed: Observed, effects: Sequence[Active]) -> Fit | None:
     """The fit gone on with all of that free; None where it cannot be run."""
     told = found.fit
-    hypothesis, x = _with_parameters(told.hypothesis, told.x, effects)
+    hypothesis, x = _with_parameters(*_with_levels(told.hypothesis, told.x), effects)
     for more in (with_departures, with_courses):
         hypothesis, observed = more(hypothesis, observed, x)
         x = np.pad(x, (0, hypothesis.size - x.size))
@@ -52,6 +62,17 @@ def freed(found: Candidate, observed: Observed, effects: Sequence[Active]) -> Fi
         return fit(hypothesis, Bench(observed).at(found.form), x, STEPS, WITHIN)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError):
         return None
+
+
+def _with_levels(hypothesis: Hypothesis, x: Array) -> tuple[Hypothesis, Array]:
+    """With the levels of c* and thrust free, unless an effect of that name acts."""
+    acting = {active.effect.name for active in hypothesis.engine.effects}
+    for name, (strength, std) in LEVELS.items():
+        if name not in acting:
+            level = Free(f"{name}.{strength}", 0.0, std, least=-FARTHEST, most=FARTHEST)
+            hypothesis = hypothesis.with_active(effect(name).at(), (level,))
+            x = np.append(x, 0.0)
+    return hypothesis, x
 
 
 def _with_parameters(hypothesis: Hypothesis, x: Array, effects: Sequence[Active]) -> tuple[Hypothesis, Array]:

@@ -170,7 +170,8 @@ class _Constants:
 
     def _exponent(self) -> Quantity:
         """m with its verdict: it may move between bounds within which a fit has to stay."""
-        free, _, std = self._free("polytropic_exponent")
+        free, place = self._free("polytropic_exponent")[0], self._place("polytropic_exponent")
+        std = float(np.sqrt(self.found.fit.covariance[place, place]))  # what may be off beside tells no less of it
         found = self._quantity("polytropic_exponent", "")
         assert found.ci95 is not None
         before = f"what is known of nitrous oxide, {free.center:.2f} ± {free.std:.2f}"

@@ -43,10 +43,14 @@ Source: engines of this class; where a departure turns is taken up by the consta
 LEANEST, RICHEST = 30.0, 1.0
 """Oxidizer to fuel [-] between which a mixture counts. Source: beyond it hardly anything burns."""
 
+CRACK = 0.05
+"""Part of its area that a valve has from the beginning [-], for nothing flows through none. Source: by choice; the time
+in which it opens further counts."""
+
 GRUENEISEN = 0.25
 """Rise of pressure by heat in the vapor, p V over it [-]. Source: gamma - 1 of nitrous oxide's vapor at 270 K."""
 
-(LOSS_POWER, REYNOLDS, RATIO, OF_VAPOR, MIXTURE, PRESSURE, EXPONENT, PORT, FUEL_FLUX, THRUST) = range(10)
+(LOSS_POWER, REYNOLDS, RATIO, OF_VAPOR, MIXTURE, PRESSURE, EXPONENT, PORT, FUEL_FLUX, THRUST, OPENING) = range(11)
 
 
 @term
@@ -62,6 +66,8 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         site[FEED_FACTOR] *= exp(p[LOSS_POWER] * flow)
         behind = p[RATIO] * (env[P_CHAMBER] / max(env[P_TANK], 1e4) - USUAL_RATIO)
         site[INJECTOR_FACTOR] *= exp(p[REYNOLDS] * flow + behind + (0.0 if liquid else p[OF_VAPOR]))
+        if t < p[OPENING]:
+            site[INJECTOR_FACTOR] *= max(t / p[OPENING], CRACK)
     elif hook == RATES:
         if not liquid:
             work = env[OXIDIZER_FLOW] * env[P_TANK] / env[RHO_FEED]
@@ -79,7 +85,7 @@ LAWS = Effect(
     meaning="laws of the same equations that right models of an engine may have",
     reference="see the parameters",
     sites=("feed_factor", "injector_factor", "temperature_factor", "tank_heat", "regression_factor", "thrust_factor"),
-    strengths=10,
+    strengths=11,
     parameters=(
         Parameter("loss", "-", "power of the flow that a line's loss goes with, less 2: turbulent flow in smooth tubes "
                   "has 1.75, through fittings 2", 0.1),
@@ -97,6 +103,8 @@ LAWS = Effect(
         Parameter("fuel's flux", "-", "power of the total flux over the oxidizer's that it goes with: half of the n of "
                   "a law by the total flux, for the fuel's own is half of it on the mean", 0.25),
         Parameter("boundary layer", "-", "part of the thrust that a nozzle's boundary layer takes", 0.005),
+        Parameter("valve", "s", "time in which the valve opens: a solenoid or pneumatic one takes 10 to 40 ms, and an "
+                  "instant that is seen late is no area that grows", 0.02),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,

@@ -65,7 +65,7 @@ def channel_of(
     std = np.sqrt(own.diagonal())
     return ObservedChannel(
         name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance,
-        coherence_of(own), _of_blocks(wander.slow(frame.grid, frame.width), blocks), unsure=wander.unsure,
+        coherence_of(own), _of_blocks(wander.slow(frame.grid, frame.width), blocks), unsure=wander.unsure, moved=shared,
     )  # fmt: skip
 
 
