@@ -248,24 +248,24 @@ def test_both_together_tell_one_rate_and_hardly_n(products: dict[str, Any]) -> N
 
 EFFECTS = """
 [feed_line_fill]
-volume = "0.6956 L"
-steepness = 1.4774
-boiling = 0.9954
-throttled = 0.5603
+volume = "0.679 +/- 0.027 L"
+steepness = "1.44 +/- 0.55"
+boiling = "0.934 +/- 0.043"
+throttled = "0.67 +/- 0.44"
 [injector_choked_vapor]
-weight = 0.3696
-gamma = 1.2059
+weight = "0.381 +/- 0.019"
+gamma = "1.201 +/- 0.1"
 [n2_purge]
-area = "40.44 mm^2"
-supply_pressure = "38.279 bar"
-cracking_pressure = "4.2765 bar"
-temperature = "283.79 K"
-line_to_valve = 0.0812
-critical_ratio = 0.3225
+area = "37.91 +/- 3.7 mm^2"
+supply_pressure = "38.649 +/- 0.22 bar"
+cracking_pressure = "4.2727 +/- 0.075 bar"
+temperature = "277.34 +/- 12 K"
+line_to_valve = "0.0797 +/- 0.074"
+critical_ratio = "0.331 +/- 0.12"
 [tank_nonequilibrium]
-depth = "9.160 bar"
-delay = "0.2466 s"
-sustained = 0.6924
+depth = "9.079 +/- 0.91 bar"
+delay = "0.2225 +/- 0.043 s"
+sustained = "0.7205 +/- 0.069"
 """
 """What `hfa diagnose HF5 --apply` adopts."""
 
@@ -289,7 +289,8 @@ def test_with_what_is_missing_m_is_that_of_nitrous_oxide(explained: dict[str, An
     assert m["std"] == pytest.approx(0.07, abs=0.02)
     n = explained["calibration"]["n"]
     assert n["value"] == pytest.approx(0.62, abs=0.02)
-    assert n["std"] == pytest.approx(0.08, abs=0.02)
+    assert n["std"] == pytest.approx(0.16, abs=0.02)
+    assert n["verdict"] == "not identifiable"
     assert explained["calibration"]["one_by_one"]["m"]["value"] < 1.0
 
 
@@ -325,7 +326,7 @@ def test_one_effect_that_is_not_the_whole_story_is_refused_and_what_was_found_on
     assert found["n"]["value"] == pytest.approx(base["n"]["value"], abs=0.05)
     assert "one_by_one" not in found
     (said,) = (w for w in found["warnings"] if "one by one, not together" in str(w))
-    for part in ("p_purge is missed by 7.41 bar", "times its noise", "m is on its bound", "K_loss would be 1.51e+09"):
+    for part in ("p_purge is missed by 7.28 bar", "times its noise", "m is on its bound", "K_loss would be 1.51e+09"):
         assert part in str(said), part
 
 

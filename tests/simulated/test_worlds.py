@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,18 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 from benchmarks.worlds_quick import Scored, figures
+from benchmarks.worlds_table import table
 from simulated.blind import nitrous
 from simulated.blind import slots as s
 from simulated.blind import stand as blind
 from simulated.blind.effects import EFFECTS, Hidden, slots_of
-from simulated.worlds import laws
+from simulated.worlds import laws, reference
 from simulated.worlds.engines import ENGINES, drawn, simulated
 from simulated.worlds.engines import QUICK as ENGINES_OF_QUICK
 from simulated.worlds.loggers import LOGGERS, filtered, written
 from simulated.worlds.loggers import QUICK as LOGGERS_OF_QUICK
 from simulated.worlds.loggers import drawn as drawn_sensors
-from simulated.worlds.plan import KINDS, plan
-from simulated.worlds.write import write_test
+from simulated.worlds.plan import KINDS, SETS, plan, worlds
+from simulated.worlds.write import answer_path, write_test
 
 from hfanalysis.record.definition import load_definition
 
@@ -160,3 +162,64 @@ def test_what_is_stated_surely_beside_the_right_name_is_wrong_all_the_same() -> 
         "The search did not converge in Q.",
     ]
     assert rows[2] == "| all | 5 | 1 of 1 | 2 of 5 | 1 of 3 | 1 of 1 | 0 of 0 | 0 |"
+
+
+def test_scored_worlds_are_one_draw_each_and_their_tests_are_their_own() -> None:
+    tests = plan("scored", 10_000)
+    assert len({t.id for t in tests}) == len({t.seed for t in tests}) == len(tests) < 500
+    for place in worlds("scored"):
+        own = [t for t in tests if t.world == place.name]
+        assert {(t.engine, t.logger, t.laws) for t in own} == {(place.engine, place.logger, place.laws)}
+        assert sum(t.kind == "none" for t in own) >= 25
+        stretch = [t.kind for t in tests[: len(tests) // 2] if t.world == place.name]
+        assert 0.4 < stretch.count("none") / sum(t.kind == "none" for t in own) < 0.6
+    assert len({t.laws for t in tests}) == len(worlds("scored")) == 9
+    others = {t.seed for which in SETS if which != "scored" for t in plan(which, 400)}
+    assert not others & {t.seed for t in tests}
+
+
+def test_all_tests_of_a_world_have_its_laws_and_an_answer_says_how_far_rivals_are(tmp_path: Path) -> None:
+    first, second = [t for t in plan("scored", 10_000) if t.world == "A" and t.kind == "single"][:2]
+    answers = []
+    for test in (first, second):
+        write_test(test, tmp_path)
+        answers.append(json.loads(answer_path(test.id, tmp_path).read_text(encoding="utf-8")))
+    assert answers[0]["laws"] == answers[1]["laws"]
+    assert answers[0]["fade"] == answers[1]["fade"]
+    for answer in answers:
+        for effect in answer["effects"].values():
+            assert 0.0 <= effect["to_rivals"] <= effect["d_prime"] + 1e-9
+
+
+def test_the_reference_solver_runs_a_stand_as_the_blind_generator_does_without_laws(stand: blind.Stand) -> None:
+    solved, plain = reference.histories(stand), simulated(stand, laws.plain())
+    assert solved.t_v == pytest.approx(plain.t_v, rel=0.02)
+    rows = slice(300, int(900 * min(solved.t_v, plain.t_v)))
+    for channel in (s.P_TANK, s.P_RUN, s.P_CHAMBER, s.THRUST, s.M_TANK):
+        assert solved.traces[rows, channel] == pytest.approx(plain.traces[rows, channel], rel=0.04)
+    assert np.abs(solved.traces[rows, s.P_CHAMBER] - plain.traces[rows, s.P_CHAMBER]).max() > 1e3
+
+
+def test_the_table_counts_claims_by_world_and_what_could_be_asked_for() -> None:
+    def case(kind: str, world: str, d_prime: float, rivals: float, product: dict[str, Any]) -> Scored:
+        effect = {"d_prime": d_prime, "to_rivals": rivals, "equations": ["grain"], "inside_library": True}
+        effects = {} if kind == "none" else {"fuel_sliver": effect}
+        answer = {"id": "x", "kind": kind, "world": world, "engine": "e", "logger": "l", "end": "left"}
+        return Scored({**answer, "effects": effects}, product, 5.0, "")
+
+    def named(name: str, p: float) -> dict[str, Any]:
+        posterior = {name: p, "none": 1.0 - p}
+        return {"verdict": "named", "effects": [{"name": name, "probability": p}], "posterior": posterior}
+
+    quiet = {"verdict": "none", "effects": [], "posterior": {"none": 0.8, "unknown": 0.2}}
+    cases = [
+        *[case("none", "A", 0.0, 0.0, quiet)] * 3, case("none", "B", 0.0, 0.0, named("tank_heat", 0.95)),
+        case("single", "A", 20.0, 9.0, named("fuel_sliver", 0.97)), case("single", "B", 20.0, 9.0, quiet),
+        case("single", "B", 20.0, 1.0, quiet),
+    ]  # fmt: skip
+    rows = {line.split("|")[1].strip(): line.split("|") for line in table(cases) if line.startswith("|")}
+    assert rows["claim where nothing is hidden, all worlds"][2].strip() == "0.250"
+    assert float(rows["the same in the worst world (its lower limit)"][2]) > 0.15
+    exact = rows["exact set of names, d' >= 8 and >= 4 to every rival"]
+    assert (exact[2].strip(), exact[4].strip()) == ("0.500", "2")
+    assert "| 1 of 1 (" in next(line for line in table(cases) if line.startswith("| B "))

@@ -10,6 +10,7 @@ the way to where it ends.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -32,6 +33,10 @@ and 16). Evidence: in HF5 n follows the level of c* more than all else (docs/cal
 FARTHEST = 3.0
 """Of those standard deviations, by which a level may be off."""
 
+AWAY = 0.2
+"""By how much n starts elsewhere [-]: a and n trade against each other, and with the level of c*. Source: the standard
+deviation of n among fuels."""
+
 STEPS, WITHIN = 10, 0.02
 """Steps of that fit at most, and the change of its objective [natural log] below which it is done."""
 
@@ -40,28 +45,35 @@ def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]
     """Second moments (parameters, parameters) about the fitted constants, in standard deviations of their priors.
 
     ``effects``: those of the fit that are adopted. Where the engine cannot be run with all of them free it is the
-    covariance of the fit itself.
+    covariance of the fit itself. Where several sets of constants explain the test, each counts by its probability.
     """
-    told = found.fit
-    free = freed(found, observed, effects)
-    if free is None:
+    told, fits = found.fit, freed(found, observed, effects)
+    if not fits:
         return told.covariance
-    size = told.x.size
-    off = free.x[:size] - told.x
-    return np.asarray(free.covariance[:size, :size] + np.outer(off, off))
+    size, best = told.x.size, min(one.objective for one in fits)
+    weights = np.exp([best - one.objective for one in fits])
+    moments = [one.covariance[:size, :size] + np.outer(one.x[:size] - told.x, one.x[:size] - told.x) for one in fits]
+    return np.asarray(np.tensordot(weights / weights.sum(), np.array(moments), 1))
 
 
-def freed(found: Candidate, observed: Observed, effects: Sequence[Active]) -> Fit | None:
-    """The fit gone on with all of that free; None where it cannot be run."""
+def freed(found: Candidate, observed: Observed, effects: Sequence[Active]) -> list[Fit]:
+    """Fits that go on with all of that free, from the fitted constants and from n AWAY to either side; those that can
+    be run, and end apart from each other."""
     told = found.fit
     hypothesis, x = _with_parameters(*_with_levels(told.hypothesis, told.x), effects)
     for more in (with_departures, with_courses):
         hypothesis, observed = more(hypothesis, observed, x)
         x = np.pad(x, (0, hypothesis.size - x.size))
-    try:
-        return fit(hypothesis, Bench(observed).at(found.form), x, STEPS, WITHIN)
-    except (ValueError, ArithmeticError, np.linalg.LinAlgError):
-        return None
+    tempered, place, fits = Bench(observed).at(found.form), hypothesis.names.index("n"), list[Fit]()
+    n = hypothesis.free[place]
+    for away in (0.0, -AWAY, AWAY):
+        start = x.copy()
+        start[place] = np.clip(n.place(n.value(float(x[place])) + away), n.least, n.most)
+        with suppress(ValueError, ArithmeticError, np.linalg.LinAlgError):
+            one = fit(hypothesis, tempered, start, STEPS, WITHIN)
+            if all(abs(one.objective - other.objective) > WITHIN for other in fits):
+                fits.append(one)
+    return fits
 
 
 def _with_levels(hypothesis: Hypothesis, x: Array) -> tuple[Hypothesis, Array]:

@@ -1,10 +1,11 @@
 """The gap between model and measurement, by channel and phase, and which part of it an explanation closes.
 
-Where a sensor's offset and gain are uncertain, what they explain is no gap of the model: it is taken off first, and so
-is what the instants may be off by on which the model is laid over the measurement: a valve opens over tens of
-milliseconds, and in that time a chamber's pressure is missed by more than in all that follows. The gap is what is left beyond the noise: sqrt(max(0, rms^2 - noise^2)). The mean square of noise varies by chance, the more the
-slower it is, and how large slow noise is a quiet time tells to a factor only: where fractions are taken, an excess that
-either makes of no gap counts as none, before and after.
+Where a sensor's offset and gain are uncertain, what they explain is no gap of the model: it is taken off first. So is
+what the instants may be off by on which the model is laid over the measurement: a valve opens over tens of
+milliseconds, and in that time a chamber's pressure is missed by more than in all that follows. The gap is what is left
+beyond the noise: sqrt(max(0, rms^2 - noise^2)). The mean square of noise varies by chance, the more the slower it is,
+and how large slow noise is a quiet time tells to a factor only: where fractions are taken, an excess that either makes
+of no gap counts as none, before and after.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ def residuals_of(found: Ran, observed: Observed) -> dict[str, Array]:
 
 
 def _bias(channel: ObservedChannel, residual: Array, errors: tuple[float, float]) -> Array:
-    """The most probable offset and gain error of a sensor, as its stated accuracy allows, and errors of the instants."""
+    """The most probable offset and gain of a sensor, as its stated accuracy allows, and errors of the instants."""
     burning = ~channel.resting
     moved = np.zeros((burning.size, 0)) if channel.moved is None else channel.moved
     shapes = np.column_stack([burning, burning * channel.value / float(np.abs(channel.value).max()), moved])

@@ -28,9 +28,9 @@ class ObservedChannel:
     noise, whose size a quiet time of seconds does not tell exactly, but to the standard deviation ``unsure`` of the log
     of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
     not the channel's own. ``departures`` (blocks, departures): what a model would read more if the table of nitrous
-    oxide or a law departed by a standard deviation; None where that was not asked. ``moved`` (blocks, errors) [SI]: what
-    it differs by if an instant on which the model is laid was seen a standard deviation late, or more flows without
-    fire; it is part of the covariance.
+    oxide or a law departed by a standard deviation; None where that was not asked. ``moved`` (blocks, errors) [SI]:
+    what it differs by if an instant on which the model is laid was seen a standard deviation late, or more flows
+    without fire; it is part of the covariance.
 
     Arrays are (blocks,), the covariances (blocks, blocks) [SI squared].
     """
