@@ -69,7 +69,9 @@ def constants(stand: Stand) -> dict[str, float]:
 
 def of_run(stand: Stand, true: Histories) -> dict[str, object]:
     """What a test has whatever its laws are: oxidizer gone and left at the end of the liquid [kg], and regression [m/s]
-    by oxidizer flux [kg/(m^2 s)] at some instants of the fire."""
+    by oxidizer flux [kg/(m^2 s)] at some instants of the fire; nothing where the liquid does not end."""
+    if not np.isfinite(true.t_v):
+        return {}
     left = float(true.trace(s.M_TANK)[int(true.t_v / STEP)])
     radius, flow = true.trace(s.RADIUS), true.trace(s.FLOW)
     flux, rate = flow / (np.pi * radius**2), np.gradient(radius, STEP)

@@ -2,9 +2,9 @@
 
 The engine that they are for has one table of nitrous oxide, one law per equation, the characteristic velocity and the
 nozzle of equilibrium, and the effects as they were adopted. None of these is known so well. With all of them free (the
-effects' parameters by their priors, their courses, the table and the laws as a diagnosis takes them, and the levels of
-c* and thrust) the constants may move elsewhere, and by more. Their error about what is told is that of this fit, and
-the way to where it ends.
+effects' parameters by their priors, their courses, the table and the laws as a diagnosis takes them, the levels of c*
+and thrust, and what is stated as a range) the constants may move elsewhere, and by more. Their error about what is told
+is that of this fit, and the way to where it ends.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ from hfanalysis.inference.fitting.courses import with_courses
 from hfanalysis.inference.fitting.departures import with_departures
 from hfanalysis.inference.fitting.fit import Fit, fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis, free_parameters
+from hfanalysis.inference.half_known import with_ranges
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.record.definition import TestDefinition
 
 LEVELS = {"combustion_efficiency": ("deficit", 0.05), "nozzle_divergence": ("loss", 0.02)}
 """Effects whose strength is the level of c* and of thrust, and its standard deviation [-]. Source: hybrids have 0.90 to
@@ -41,13 +43,14 @@ STEPS, WITHIN = 10, 0.02
 """Steps of that fit at most, and the change of its objective [natural log] below which it is done."""
 
 
-def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]) -> Array:
+def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active], definition: TestDefinition) -> Array:
     """Second moments (parameters, parameters) about the fitted constants, in standard deviations of their priors.
 
-    ``effects``: those of the fit that are adopted. Where the engine cannot be run with all of them free it is the
-    covariance of the fit itself. Where several sets of constants explain the test, each counts by its probability.
+    ``effects``: those of the fit that are adopted; ``definition``: what is stated. Where the engine cannot be run with
+    all of that free it is the covariance of the fit itself. Where several sets of constants explain the test, each
+    counts by its probability.
     """
-    told, fits = found.fit, freed(found, observed, effects)
+    told, fits = found.fit, freed(found, observed, effects, definition)
     if not fits:
         return told.covariance
     size, best = told.x.size, min(one.objective for one in fits)
@@ -56,11 +59,13 @@ def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]
     return np.asarray(np.tensordot(weights / weights.sum(), np.array(moments), 1))
 
 
-def freed(found: Candidate, observed: Observed, effects: Sequence[Active]) -> list[Fit]:
+def freed(found: Candidate, observed: Observed, effects: Sequence[Active], definition: TestDefinition) -> list[Fit]:
     """Fits that go on with all of that free, from the fitted constants and from n AWAY to either side; those that can
     be run, and end apart from each other."""
     told = found.fit
     hypothesis, x = _with_parameters(*_with_levels(told.hypothesis, told.x), effects)
+    hypothesis = with_ranges(hypothesis, definition)
+    x = np.pad(x, (0, hypothesis.size - x.size))
     for more in (with_departures, with_courses):
         hypothesis, observed = more(hypothesis, observed, x)
         x = np.pad(x, (0, hypothesis.size - x.size))

@@ -71,7 +71,7 @@ def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Cal
     effects acting, whose other entries stay. Raises AbsentError where the test has no engine that runs, no chamber
     pressure to compare, or the fit is none to go by (:func:`hfanalysis.calibrate.joint_refused.reasons`).
     """
-    hypothesis, observed = subject.compared(any_table=False)
+    hypothesis, observed = subject.compared(as_run=True)
     if "p_chamber" not in observed.names:
         raise AbsentError("nothing of p_chamber is left to fit a and n to")
     engine = replace(hypothesis.engine, effects=(*hypothesis.engine.effects, *effects))
@@ -81,7 +81,8 @@ def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Cal
     if why := reasons(found, observed, one_by_one, subject.definition):
         raise AbsentError("; ".join(why) + ". With these effects alone the model is far from this test: diagnose it")
     try:
-        return _Constants(subject, observed, found, one_by_one, errors_about(found, observed, effects)).product()
+        errors = errors_about(found, observed, effects, subject.definition)
+        return _Constants(subject, observed, found, one_by_one, errors).product()
     except ArithmeticError as error:
         raise AbsentError(f"the engine's model with the adopted effects cannot be run to its end: {error}") from error
 

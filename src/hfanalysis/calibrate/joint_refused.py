@@ -81,7 +81,7 @@ def change_nothing(subject: Subject, effects: Sequence[Active]) -> bool:
 
     Raises AbsentError where the test has no engine that runs.
     """
-    hypothesis, observed = subject.compared(any_table=False)
+    hypothesis, observed = subject.compared(as_run=True)
     acting = replace(hypothesis, engine=replace(hypothesis.engine, effects=(*hypothesis.engine.effects, *effects)))
     try:
         without, with_them = (_residual(h, observed) for h in (hypothesis, acting))

@@ -45,20 +45,20 @@ class Subject:
         return {"n2_purge": _purge(self)}
 
     def hypothesis(self) -> Hypothesis:
-        """The base model with its constants free, those among them that are stated as ranges."""
+        """The base model with its constants free."""
         assert self.calibration is not None
         engine = self.start or run_full(self.log, self.segments, self.calibration, self.definition).engine
-        base = base_hypothesis(engine, self.calibration, self.definition.model.conventions != "report")
-        return with_ranges(base, self.definition)
+        return base_hypothesis(engine, self.calibration, self.definition.model.conventions != "report")
 
-    def compared(self, any_table: bool = True) -> tuple[Hypothesis, Observed]:
+    def compared(self, as_run: bool = False) -> tuple[Hypothesis, Observed]:
         """The base model and the observations, with what only the model says of these.
 
-        ``any_table``: what the table of nitrous oxide may be wrong by is free, which it is in no engine that is run.
+        ``as_run``: by the table of nitrous oxide and the laws that the engine has, and with what is stated as a range
+        at its center: nothing of these is free in an engine that is run.
         """
         hypothesis = self.hypothesis()
         observed = with_abrupt_end(self.observed(), hypothesis.engine)
-        return with_departures(hypothesis, observed) if any_table else (hypothesis, observed)
+        return (hypothesis, observed) if as_run else with_departures(with_ranges(hypothesis, self.definition), observed)
 
 
 def _purge(subject: Subject) -> dict[str, float]:

@@ -124,7 +124,7 @@ def test_where_no_name_comes_before_a_curve_nothing_is_shared(evidences: dict[st
 
 
 @pytest.mark.parametrize(
-    ("gaps", "open_"), [((5.0, 4.0), True), ((5.0, 2.0), False), ((2.1, 1.7), False), ((0.3, 0.3), False)]
+    ("gaps", "open_"), [((5.0, 4.0), True), ((9.0, 2.1), False), ((2.1, 1.7), False), ((0.3, 0.3), False)]
 )
 def test_a_name_that_closes_little_of_the_gap_is_not_the_whole_story(
     gaps: tuple[float, float], open_: bool, monkeypatch: pytest.MonkeyPatch
