@@ -16,7 +16,6 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,7 @@ from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.prediction import rows_of
 from benchmarks.studies import one_thread, percent, put
-from benchmarks.worlds_quick import VISIBLE
+from benchmarks.worlds_quick import VISIBLE, Study
 from simulated.worlds.plan import SETS, Test, plan
 
 CACHE = Path(__file__).resolve().parents[1] / ".cache" / "adopted"
@@ -41,16 +40,6 @@ LAWFUL = {
 
 RUN = ("oxidizer of the liquid phase", "oxidizer left at its end", "regression rate")
 """What every law has."""
-
-
-@dataclass(frozen=True)
-class Study:
-    """Where work is done, of which version what is found is, and which tests there are."""
-
-    root: Path
-    tests: tuple[Test, ...]
-    digest: str
-    out: Path | None = None
 
 
 def run_one(name: str, study: Study) -> dict[str, Any]:
