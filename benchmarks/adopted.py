@@ -82,7 +82,7 @@ def adopted(test: Test, root: Path) -> dict[str, Any]:
     found = run_to("calibrate", open_test(root, test.id)).read(Calibration)
     if found.joint is None or "n" not in found.joint.names:
         return {"left": "not fitted together: " + " ".join(found.warnings)[-200:]}
-    return {"told": told(found, answer)}
+    return {"told": told(found, answer), "regression": answer["laws"]["grain"]}
 
 
 def told(found: Any, answer: dict[str, Any]) -> dict[str, dict[str, float]]:
@@ -115,7 +115,19 @@ def figures(rows: Sequence[dict[str, Any]]) -> list[str]:
     for name in (*LAWFUL, *RUN):
         lines.append(_row(name, [row[name] for row in done if name in row]))
     every = [row[name] for row in done for name in (*LAWFUL, *RUN) if name in row]
-    return [*lines, _row("**all**", every)]
+    return [*lines, _row("**all**", every), "", f"The regression rate holds {_by_law(rows)}."]
+
+
+def _by_law(rows: Sequence[dict[str, Any]]) -> str:
+    """In how many tests of each law of regression the rate is held, in words."""
+    held: dict[str, list[bool]] = {}
+    for row in rows:
+        if "told" in row and RUN[2] in row["told"]:
+            rate = row["told"][RUN[2]]
+            held.setdefault(row["regression"], []).append(rate["low"] <= rate["true"] <= rate["high"])
+    return ", ".join(
+        f"in {sum(h)} of {len(h)} with a law by {law.replace('_', ' ')}" for law, h in sorted(held.items())
+    )
 
 
 def _row(name: str, found: Sequence[dict[str, float]]) -> str:
