@@ -191,17 +191,17 @@ blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-n
 	$(BLIND) run --split scored --n 1500 --kind none --jobs 2 --out .cache/blind/none $(FOUND) $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) table --split scored --none --out .cache/blind/none --write docs/blind-none.md
 
-worlds-quick: $(STAMP) ## 60 tests on other engines, by other loggers and laws: docs/worlds-quick.md; goes on where stopped
-	$(BIN)/python -m benchmarks.worlds_quick --jobs 2 --write docs/worlds-quick.md $(FLAGS)
+worlds-quick: $(STAMP) ## 60 tests on other engines, by other loggers and laws: docs/worlds.md; goes on where stopped
+	$(BIN)/python -m benchmarks.worlds --jobs 2 --write docs/worlds.md $(FLAGS)
 
-worlds: $(STAMP) ## 364 tests of nine worlds that nothing was fitted to: docs/worlds-quick.md; an evening; goes on where stopped
-	$(BIN)/python -m benchmarks.worlds_quick --set scored --limit 1000 --jobs 2 --write docs/worlds-quick.md $(FLAGS)
+worlds: $(STAMP) ## 364 tests of nine worlds that nothing was fitted to: docs/worlds.md; an evening; goes on where stopped
+	$(BIN)/python -m benchmarks.worlds --set scored --limit 1000 --jobs 2 --write docs/worlds.md $(FLAGS)
 
 adopted-study: $(STAMP) ## constants with adopted effects beside the truth, on simulated tests of other worlds: docs/calibration.md
 	$(BIN)/python -m benchmarks.adopted --set calibration --limit 120 --write docs/calibration.md $(FLAGS)
 
 worlds-tried: $(STAMP) ## 72 tests of wider worlds: what the diagnosis says of where it was tried (worlds.json)
-	$(BIN)/python -m benchmarks.worlds_quick --set calibration --limit 72 --jobs 2 \
+	$(BIN)/python -m benchmarks.worlds --set calibration --limit 72 --jobs 2 \
 		--tried src/hfanalysis/diagnose/answer/worlds.json $(FLAGS)
 
 # A part of the method left out each time, on tests of the kind that it is there for; beside all that is kept, for it is

@@ -24,7 +24,7 @@ from benchmarks.blind.folder import PACKAGE
 from benchmarks.blind.folder import digest as digest_of
 from benchmarks.prediction import rows_of
 from benchmarks.studies import one_thread, percent, put
-from benchmarks.worlds_quick import VISIBLE, Study
+from benchmarks.worlds import VISIBLE, Study
 from simulated.worlds.plan import SETS, Test, plan
 
 CACHE = Path(__file__).resolve().parents[1] / ".cache" / "adopted"

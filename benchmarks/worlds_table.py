@@ -7,7 +7,7 @@ from statistics import median
 from typing import Any
 
 from benchmarks.practice import EQUATIONS
-from benchmarks.worlds_quick import SURE, Scored
+from benchmarks.worlds import SURE, Scored
 from simulated.blind.figures import Figure, share
 from simulated.blind.judged import Case
 from simulated.blind.score import reliability

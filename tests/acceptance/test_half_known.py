@@ -11,7 +11,7 @@ from benchmarks.real_logs.ranges import written
 from tests.acceptance.test_real_logs import LOGS
 from tests.inference.adopted.firing import make_root
 
-from hfanalysis.diagnose.half_known import with_start
+from hfanalysis.diagnose.without_law import with_start
 from hfanalysis.inference.candidate import Bench
 from hfanalysis.inference.half_known import ranges, with_ranges
 from hfanalysis.quantity import Quantity

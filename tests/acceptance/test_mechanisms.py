@@ -1,5 +1,5 @@
 """What used to mislead the diagnosis, each on a simulated log that has it: other engines, loggers and laws than those
-that it was built on (docs/worlds-quick.md, development set)."""
+that it was built on (docs/worlds.md, development set)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from benchmarks.practice import diagnosed
-from benchmarks.worlds_quick import SURE
+from benchmarks.worlds import SURE
 from simulated.worlds.plan import plan
 from simulated.worlds.write import write_test
 

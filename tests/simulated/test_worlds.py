@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.worlds_quick import Scored, figures
+from benchmarks.worlds import Scored, figures
 from benchmarks.worlds_table import table
 from simulated.blind import nitrous
 from simulated.blind import slots as s

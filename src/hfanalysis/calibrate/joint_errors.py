@@ -48,7 +48,7 @@ def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]
 
     ``effects``: those of the fit that are adopted; ``definition``: what is stated. Where the engine cannot be run with
     all of that free it is the covariance of the fit itself. Where several sets of constants explain the test, each
-    counts by its probability.
+    counts by the density of its probability: their covariances hardly differ.
     """
     told, fits = found.fit, freed(found, observed, effects, definition)
     if not fits:
@@ -61,7 +61,7 @@ def errors_about(found: Candidate, observed: Observed, effects: Sequence[Active]
 
 def freed(found: Candidate, observed: Observed, effects: Sequence[Active], definition: TestDefinition) -> list[Fit]:
     """Fits that go on with all of that free, from the fitted constants and from n AWAY to either side; those that can
-    be run, and end apart from each other."""
+    be run, and of such that end at the same objective one."""
     told = found.fit
     hypothesis, x = _with_parameters(*_with_levels(told.hypothesis, told.x), effects)
     hypothesis = with_ranges(hypothesis, definition)

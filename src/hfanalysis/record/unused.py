@@ -46,7 +46,7 @@ SPREADS_OF_FITS = frozenset({
     "nozzle.exit_radius",
 })  # fmt: skip
 """Values of test.toml whose +/- is a range for the fits of all channels together alone: a diagnosis, and the constants
-after an effect is adopted. Evidence: tests/inference/test_half_known.py."""
+after an effect is adopted. Evidence: tests/acceptance/test_half_known.py and tests/calibrate/test_joint_errors.py."""
 
 
 def unused(stated: Section, keys: Container[str], used: Callable[[str], bool], where: str) -> tuple[str, ...]:
@@ -65,7 +65,8 @@ def for_fits_alone(stated: Section, where: str) -> tuple[str, ...]:
     loose = _spreads(stated, SPREADS_OF_FITS.__contains__)
     if not loose:
         return ()
-    return (f"{where}: the +/- of {', '.join(loose)} is a range for hfa diagnose, and in no interval of a calibration",)
+    words = "is a range for hfa diagnose, and in no interval of a calibration without adopted effects"
+    return (f"{where}: the +/- of {', '.join(loose)} {words}",)
 
 
 def _spreads(stated: Section, asked: Callable[[str], bool]) -> list[str]:

@@ -46,7 +46,7 @@ def run(context: Context) -> None:
 
 def subject_of(context: Context) -> Subject:
     """What the products of a test give a diagnosis to work on; without a calibration where none can be had."""
-    from hfanalysis.diagnose.half_known import with_start
+    from hfanalysis.diagnose.without_law import with_start
     from hfanalysis.diagnose.without_run_line import NOTE, lumped_calibration
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.calibration import Calibration

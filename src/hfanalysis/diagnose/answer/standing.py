@@ -42,7 +42,7 @@ SHOWN = {"Pa": "bar"}
 CLOSES, LEFT_OPEN = 0.75, 2.0
 """Part of the gap between model and test that a name has to close, where more of it is left than this many times the
 noise [-]. Source: three quarters of a root mean square are all but a sixteenth of the misfit's square, and the noise of
-means is known to some tens of per cent. Evidence: in the development set of docs/worlds-quick.md sets of names that are
+means is known to some tens of per cent. Evidence: in the development set of docs/worlds.md sets of names that are
 right close 0.8 and more, all but one of them 0.99; one name that is right closes 0.54, and is held back."""
 
 

@@ -42,7 +42,7 @@ Source: an orifice's coefficient goes with the Reynolds number and the pressure 
 the power 1.8 or 2 of the flow, by a fifth of itself; regression with the oxidizer's flux or the total one, of which the
 end of the fuel tells the mean; c* by 1 % with frozen or shifting mixtures, its square by 2 %; a nozzle's boundary layer
 takes about 1 %; in a tank three times the flow work goes into evaporation, of whose heat tables know 1 %. Choice, with
-the development set of docs/worlds-quick.md, whose engines have such laws: what was named there where nothing is hidden
+the development set of docs/worlds.md, whose engines have such laws: what was named there where nothing is hidden
 is smaller, but for what burns on at the end of the fuel.
 """
 

@@ -1,6 +1,6 @@
 """How a test compares with the simulated ones on which the diagnosis was tried, and what that says of its answer.
 
-The rows of worlds.json are tests of the set ``calibration`` of docs/worlds-quick.md, which no constant of the diagnosis
+The rows of worlds.json are tests of the set ``calibration`` of docs/worlds.md, which no constant of the diagnosis
 comes of: under which conditions each was taken, what was stated of it most surely, and whether that was right.
 """
 

@@ -1,6 +1,6 @@
-"""Sixty tests on other engines, by other loggers and laws, diagnosed and scored: every change is judged at once.
+"""Tests on other engines, by other loggers and laws, diagnosed and scored: sixty at once, or nine worlds in an evening.
 
-python -m benchmarks.worlds_quick [--set quick] [--limit 60] [--jobs 2] [--write docs/worlds-quick.md] [--tried FILE]
+python -m benchmarks.worlds [--set quick] [--limit 60] [--jobs 2] [--write docs/worlds.md] [--tried FILE]
 
 Tests and what was found lie under .cache/worlds/SET; a run goes on where it was stopped, and what another version of
 the package found is found anew. Answers are read only to score.
