@@ -14,6 +14,8 @@ from hfanalysis.diagnose.answer.source_places import places
 from hfanalysis.diagnose.answer.verdict import effects_product, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
+    _LACKING,
+    _NAMED_PLACES,
     effect_sentences,
     equation_sentence,
     gap_line,
@@ -194,3 +196,11 @@ def test_it_is_said_that_no_model_comes_near_a_test_and_which_comes_nearest() ->
     assert "The best with names (n2 purge and tank heat) leaves a chi-square of 18.8 per observation." in said
     bare = poor_fit_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried[2:]}))
     assert "The best with names leaves a chi-square of 18.8 per observation." in bare
+
+
+@pytest.mark.parametrize("forms", [*_LACKING.values(), *_NAMED_PLACES.values()])
+def test_what_a_source_says_names_what_it_is_of_on_either_side(forms: tuple[str, str]) -> None:
+    """Each stands in a sentence of its own: nothing before it says what "it" is."""
+    for form in forms:
+        assert form.count("{size}") == 1
+        assert not form.startswith(("it ", "It "))

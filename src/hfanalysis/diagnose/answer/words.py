@@ -34,7 +34,10 @@ _LACKING: dict[tuple[str, str], tuple[str, str]] = {
         "{size} of gas enters the tank that the model does not have",
         "{size} leaves the tank that the model keeps in it",
     ),
-    ("tank_energy", "Pa"): ("the tank's pressure is {size} above the model's", "it is {size} below the model's"),
+    ("tank_energy", "Pa"): (
+        "the tank's pressure is {size} above the model's",
+        "the tank's pressure is {size} below the model's",
+    ),
     ("tank_volume", "Pa"): (
         "the tank's pressure is {size} above the model's at its temperature",
         "the tank's pressure is {size} below the model's at its temperature",
