@@ -68,6 +68,12 @@ def plan(root: Path, base: Base) -> PlannedTest:
     return load_planned(plan_of(root, "HF4", f"{base.found.full.engine.temperature!r} K", "again"))
 
 
+@pytest.fixture
+def one_day(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Predictions of the planned temperature alone."""
+    monkeypatch.setattr(prediction, "DAYS", ())
+
+
 def test_the_same_test_planned_is_the_same_engine(plan: PlannedTest, base: Base) -> None:
     again = planned(plan, base)
     theirs = base.found.full.burnt
@@ -172,6 +178,7 @@ def test_effects_are_drawn_within_their_bounds(plan: PlannedTest, base: Base) ->
     assert planned(plan, other, effects=False).stand.effects == ()
 
 
+@pytest.mark.usefixtures("one_day")
 def test_predictions_are_moved_by_what_the_model_missed_and_widen_by_half_of_it(plan: PlannedTest, base: Base) -> None:
     origins = {"HF4": Origin(raw={"log.csv": "x"}, test_toml="y", products={}, effects=())}
     found = predict(plan, [base], origins, draws=100)
@@ -292,6 +299,7 @@ def test_a_prediction_that_has_no_number_is_frozen_without_a_picture(frozen: tup
     assert plots.prediction(empty) is None
 
 
+@pytest.mark.usefixtures("one_day")
 def test_another_seed_moves_the_ends_of_the_bands_by_less_than_a_seventh_of_them(plan: PlannedTest, base: Base) -> None:
     origins = {"HF4": Origin(raw={}, test_toml="", products={}, effects=())}
     one, other = (predict(plan, [base], origins, seed=seed).predicted for seed in (1, 2))
