@@ -176,11 +176,7 @@ def figures(rows: Sequence[dict[str, Any]]) -> list[str]:
         "| quantity | bands that hold | mean error | as last time | without effects |",
         "|---|---|---|---|---|",
     ]
-    every = [(quantity, s) for row in done for quantity, s in row["scored"].items()]
-    for quantity in dict.fromkeys(name for name, _ in every):
-        out.append(_row(quantity, [s for name, s in every if name == quantity]))
-    out.append(_row("**all**", [s for _, s in every]))
-    out.append(_row("all, where effects are adopted", [s for row in adopted for s in row["scored"].values()]))
+    out += _rows(done, "{}") + _rows(adopted, "{}, where effects are adopted")
     for name in ("C_i", "regression rate") if done else ():
         spread = sqrt(mean(row["moved"][name] ** 2 for row in done) / 2.0)
         true = sqrt(mean(row["true"][name] ** 2 for row in done))
@@ -203,12 +199,22 @@ def fitted(moved: Sequence[float]) -> tuple[float, int]:
     return max(found, key=lambda one: float(t.logpdf(off, one[1], scale=one[0]).sum()))
 
 
+def _rows(pairs: Sequence[dict[str, Any]], label: str) -> list[str]:
+    """A row for each quantity, and one for all."""
+    every = [(quantity, s) for row in pairs for quantity, s in row["scored"].items()]
+    names = dict.fromkeys(name for name, _ in every)
+    return [
+        *(_row(label.format(name), [s for own, s in every if own == name]) for name in names),
+        _row(label.format("**all**"), [s for _, s in every]),
+    ]
+
+
 def _row(name: str, of: Sequence[dict[str, Any]]) -> str:
     told = [s["holds"] for s in of if s["holds"] is not None]
     whole = [s for s in of if s["error"] is not None and None not in s["rivals"].values()]
     errors = [mean(abs(s["error"]) for s in whole)] if whole else [None]
     errors += [mean(abs(s["rivals"][rival]) for s in whole) if whole else None for rival in RIVALS]
-    held = f"{percent(mean(told))} of {len(told)}" if told else "-"
+    held = f"{percent(mean(told))} ({sum(told)} of {len(told)})" if told else "-"
     return f"| {name} | {held} | " + " | ".join("-" if e is None else f"{100.0 * e:.1f} %" for e in errors) + " |"
 
 

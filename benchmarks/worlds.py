@@ -80,6 +80,8 @@ class Scored:
     @property
     def exact(self) -> bool:
         """Whether just what is hidden was named; of what is outside the library, that it is unknown."""
+        if self.failure:
+            return False
         if self.answer["kind"] == "none":
             return not self.claims
         return self._unknown if self.answer["kind"] == "outside" else set(self.named) == self.hidden
@@ -158,7 +160,7 @@ def figures(cases: Sequence[Scored]) -> list[str]:
     for what in ("logger", "engine", "end"):
         for value in sorted({c.answer[what] for c in cases}):
             lines.append(_row(f"{what}: {value}", [c for c in cases if c.answer[what] == value]))
-    seconds = [c.seconds for c in cases if not c.failure]
+    seconds = [c.seconds for c in cases]
     if seconds:
         lines += ["", f"A diagnosis takes {median(seconds):.0f} s (median), {max(seconds):.0f} s at most."]
     return [*lines, *forms(cases), *unsettled(cases)]
@@ -178,6 +180,13 @@ def unsettled(cases: Sequence[Scored]) -> list[str]:
     """Tests in which the base model was found deeper after all had been compared with it: there should be none."""
     ids = [c.answer["id"] for c in cases if any("search did not converge" in w for w in c.product.get("warnings", ()))]
     return ["", f"The search did not converge in {', '.join(ids)}."] if ids else []
+
+
+def refused(cases: Sequence[Scored]) -> list[str]:
+    """Tests that came to no diagnosis, which are in no figure, with the reason; nothing where all did."""
+    reasons = [f"- {c.answer['id']}: {c.failure.strip().splitlines()[-1]}" for c in cases if c.failure]
+    said = f"{len(reasons)} of {len(cases)} came to no diagnosis and are in no figure:"
+    return ["", said, "", *reasons] if reasons else []
 
 
 def listing(cases: Sequence[Scored]) -> list[str]:
@@ -228,7 +237,7 @@ def main() -> int:
     tests = plan(asked.set, max(asked.limit, 60))[: asked.limit]
     tests = [t for t in tests if not asked.only or t.id in asked.only.split(",")]
     todo = [t for t in tests if not fresh(t, root, digest)]
-    started = perf_counter()
+    started, broken = perf_counter(), 0
     from benchmarks.worlds_table import table
 
     from hfanalysis.campaign.cluster import Cluster
@@ -237,22 +246,25 @@ def main() -> int:
         found = cluster.each(run_one, [test.id for test in todo], Study(root, tuple(todo), digest))
         for done, (name, seconds) in enumerate(found, 1):
             if isinstance(seconds, str):
-                raise SystemExit(seconds)
+                broken += 1
+                print(f"{done}/{len(todo)} {name}: {seconds}", file=sys.stderr, flush=True)
+                continue
             (one,) = scored([t for t in todo if t.id == name], root)
             said = ", ".join(f"{n} {p:.2f}" for n, p in one.stated.items()) or one.failure or "none"
             mark = "WRONG" if one.wrong else ("ok" if one.exact else "-")
             print(f"{done}/{len(todo)} {name} {seconds:.0f} s {mark}: {'+'.join(one.hidden) or 'nothing'} -> {said}",
                   file=sys.stderr, flush=True)  # fmt: skip
     cases = scored(tests, root)
-    lines = [*(table(cases) if asked.set in OF_WORLDS else figures(cases)), "", *listing(cases)]
+    whole = [c for c in cases if not c.failure]
+    lines = [*(table(whole) if asked.set in OF_WORLDS else figures(whole)), *refused(cases), "", *listing(cases)]
     print("\n".join(lines))
     if todo:
         print(f"\n{len(todo)} tests in {(perf_counter() - started) / 60.0:.1f} minutes", file=sys.stderr)
     if asked.write:
         put(asked.write, f"worlds {asked.set}" if asked.set in OF_WORLDS else "worlds", lines)
     if asked.tried:
-        asked.tried.write_text(json.dumps({"set": asked.set, "tests": tried(cases)}, indent=1) + "\n", encoding="utf-8")
-    return 0
+        asked.tried.write_text(json.dumps({"set": asked.set, "tests": tried(whole)}, indent=1) + "\n", encoding="utf-8")
+    return int(broken > 0)
 
 
 if __name__ == "__main__":

@@ -107,7 +107,7 @@ def put(made: Built, answer: dict[str, object], root: Path, rocket: str = "") ->
     lacking = [
         name for name, seen in zip(s.CHANNELS, np.isfinite(made.log.values).any(axis=0), strict=True) if not seen
     ]
-    (folder / "test.toml").write_text(_without(document(made), lacking) + rocket, encoding="utf-8")
+    (folder / "test.toml").write_text(_without(_document(made), lacking) + rocket, encoding="utf-8")
     frame = pd.DataFrame({"Time (s)": [f"{t:.4f}" for t in made.log.time]})
     for name in [c for c in s.CHANNELS if c not in lacking]:
         frame[column(name)] = made.log.values[:, s.CHANNELS.index(name)]
@@ -117,6 +117,13 @@ def put(made: Built, answer: dict[str, object], root: Path, rocket: str = "") ->
     part = path.with_suffix(f".{os.getpid()}.part")
     part.write_text(json.dumps(answer, indent=1), encoding="utf-8")
     os.replace(part, path)
+
+
+def _document(made: Built) -> str:
+    """test.toml, which leaves nothing out where the log ends as the valve closes."""
+    before, _, excluded = document(made).partition("[[exclude]]")
+    after_closing = float(made.log.time[-1]) > made.log.t_open + made.stand.closing
+    return before + "[[exclude]]" + excluded if after_closing else before
 
 
 def _without(document: str, channels: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +31,10 @@ def test_shares_and_errors_count_what_all_have() -> None:
     refused = {"pair": "S9", "failure": "no burn\nit cannot be lit", "defect": False}
     lines = figures([row(True, 0.02), row(False, -0.06, ("tank_heat",)), refused])
     assert lines[0] == "3 pairs: 2 predicted and scored, 1 refused; in 1 an effect is adopted from the first test."
-    assert "| total_impulse | 50 % of 2 | 4.0 % | 20.0 % | 10.0 % |" in lines
+    assert "| total_impulse | 50 % (1 of 2) | 4.0 % | 20.0 % | 10.0 % |" in lines
     assert "| t_v | - | - | - | - |" in lines
-    assert "| all, where effects are adopted | 0 % of 1 | 6.0 % | 20.0 % | 10.0 % |" in lines
+    for name in ("total_impulse", "**all**"):
+        assert f"| {name}, where effects are adopted | 0 % (0 of 1) | 6.0 % | 20.0 % | 10.0 % |" in lines
     assert lines[-1] == "- S9: it cannot be lit"
 
 
@@ -55,3 +57,21 @@ def test_pairs_are_the_same_each_time_and_the_sets_share_no_seed(tmp_path: Path)
     assert first == (tmp_path / "b" / "raw_tests" / f"{one.id}-1" / "test.toml").read_text()
     loads = [next(line for line in text.splitlines() if "oxidizer_mass" in line) for text in (first, second)]
     assert loads[0] != loads[1]
+
+
+def test_the_page_says_of_its_table_what_the_table_says() -> None:
+    """Which rivals are beaten in what; a number that is said is one of the table's."""
+    page = (Path(__file__).parents[2] / "docs" / "predict.md").read_text(encoding="utf-8")
+    before, _, after = page.partition("<!-- prediction: begin -->")
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in after.splitlines() if line.count("|") == 6
+    ]
+    errors = {row[0]: [float(x.strip(" %")) for x in row[2:]] for row in rows if row[2].endswith("%")}
+    adopted = ", where effects are adopted"
+    better = {name for name, (own, last, without) in errors.items() if own < min(last, without)}
+    quantities = {name for name in errors if adopted not in name and "all" not in name}
+    assert quantities - better == {"t_v"}
+    assert {name for name in quantities if name + adopted in better} == {"burn_time", "total_impulse", "apogee"}
+    said = re.search(r"They hold 95 % (\(\d+ of \d+\))", before)
+    assert said is not None
+    assert next(row for row in rows if row[0] == "**all**")[1] == f"95 % {said[1]}"

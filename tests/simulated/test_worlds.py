@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.worlds import Scored, figures
+from benchmarks.worlds import Scored, figures, refused
 from benchmarks.worlds_table import table
 from simulated.blind import nitrous
 from simulated.blind import slots as s
@@ -164,6 +164,18 @@ def test_what_is_stated_surely_beside_the_right_name_is_wrong_all_the_same() -> 
     assert rows[2] == "| all | 5 | 1 of 1 | 2 of 5 | 1 of 3 | 1 of 1 | 0 of 0 | 0 |"
 
 
+def test_what_came_to_no_diagnosis_is_no_right_answer_and_is_said() -> None:
+    quiet = case("none", (), "none", {})
+    failed = replace(quiet, product={}, failure="raw/Q/test.toml: no tank\nexpected [tank]")
+    assert not failed.exact
+    assert refused([quiet]) == []
+    assert refused([quiet, failed])[1:] == [
+        "1 of 2 came to no diagnosis and are in no figure:",
+        "",
+        "- Q: expected [tank]",
+    ]
+
+
 def test_scored_worlds_are_one_draw_each_and_their_tests_are_their_own() -> None:
     tests = plan("scored", 10_000)
     assert len({t.id for t in tests}) == len({t.seed for t in tests}) == len(tests) < 500
@@ -189,6 +201,15 @@ def test_all_tests_of_a_world_have_its_laws_and_an_answer_says_how_far_rivals_ar
     for answer in answers:
         for effect in answer["effects"].values():
             assert 0.0 <= effect["to_rivals"] <= effect["d_prime"] + 1e-9
+
+
+def test_a_log_of_the_reference_solver_is_read(tmp_path: Path) -> None:
+    """It ends as the valve closes: nothing after it is left out."""
+    first = next(t for t in plan("scored", 10_000) if t.of_reference)
+    write_test(first, tmp_path)
+    stated = load_definition(tmp_path / "raw_tests" / first.id / "test.toml")
+    assert stated.exclude == ()
+    assert set(stated.channels) >= {"p_tank", "p_chamber"}
 
 
 def test_the_reference_solver_runs_a_stand_as_the_blind_generator_does_without_laws(stand: blind.Stand) -> None:
