@@ -103,7 +103,8 @@ def nozzle(gas: Gas, p_c: float, p_a: float, throat: float, exit_area: float) ->
 
 @dataclass
 class Reference:
-    """The right-hand side of one engine; ``m`` and ``p_v``, ``n_v`` hold once the liquid is gone."""
+    """The right-hand side of one engine; ``m`` and ``p_v``, ``n_v`` hold once the liquid is gone, ``burnt_of`` (O/F of
+    what is left of the burnt gas) once the fuel is."""
 
     engine: Engine
     liquid: bool = True
@@ -111,6 +112,7 @@ class Reference:
     m: float = float("nan")
     p_v: float = float("nan")
     n_v: float = float("nan")
+    burnt_of: float = float("nan")
     calls: int = 0
 
     def tank_pressure(self, n_v: float, temperature: float) -> float:
@@ -196,7 +198,7 @@ class Reference:
         """Pressure of a chamber that holds burnt gas and gas that came in cold, and their mixture."""
         e, hot = self.engine, float(x[4] + x[5])
         volume = e.dead_volume + pi * x[3] ** 2 * e.grain_length
-        of, partial = x[4] / x[5], float(x[6])
+        of, partial = self.burnt_of, float(x[6])
         gas = equilibrium(max(partial, LEAST_PRESSURE), of)
         for _ in range(50):
             gas = equilibrium(max(partial, LEAST_PRESSURE), of)
@@ -308,7 +310,7 @@ def solve(engine: Engine, rtol: float = 1e-6, longest: float = 120.0, run_on: bo
         phases.append(phase)
         t, x = float(phase.t[-1]), phase.y[:, -1].copy()
         if phase.t_events[1].size and run_on:
-            reference.burning = False
+            reference.burning, reference.burnt_of = False, float(x[4] / x[5])
             continue
         if not phase.t_events[0].size:
             return Run(tuple(phases), reference.calls, reference)

@@ -102,8 +102,16 @@ class Study:
     out: Path | None = None
 
 
-def run_one(name: str, study: Study) -> float:
-    """Write a test if it is not there, diagnose it, and keep what was found; returns seconds."""
+def run_one(name: str, study: Study) -> float | str:
+    """Write a test if it is not there, diagnose it, and keep what was found; returns seconds, or what went wrong, which
+    stops no other test."""
+    try:
+        return _run(name, study)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+
+
+def _run(name: str, study: Study) -> float:
     from simulated.worlds.write import answer_path, write_test
 
     started, root = perf_counter(), study.root
