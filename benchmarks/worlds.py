@@ -133,13 +133,12 @@ def fresh(test: Test, root: Path, digest: str) -> bool:
     return path.is_file() and json.loads(path.read_text(encoding="utf-8"))["digest"] == digest
 
 
-def scored(tests: Iterable[Test], root: Path) -> list[Scored]:
-    """All tests that were diagnosed."""
+def scored(tests: Iterable[Test], root: Path, digest: str) -> list[Scored]:
+    """All tests that this version of the package has diagnosed."""
     out = []
     for test in tests:
-        path = found_path(test, root)
-        if path.is_file():
-            kept = json.loads(path.read_text(encoding="utf-8"))
+        if fresh(test, root, digest):
+            kept = json.loads(found_path(test, root).read_text(encoding="utf-8"))
             answer = json.loads((root / "answers" / f"{test.id}.json").read_text(encoding="utf-8"))
             out.append(Scored(answer, kept["product"], kept["seconds"], kept["failure"]))
     return out
@@ -190,10 +189,12 @@ def unsettled(cases: Sequence[Scored]) -> list[str]:
     return ["", f"The search did not converge in {', '.join(ids)}."] if ids else []
 
 
-def refused(cases: Sequence[Scored]) -> list[str]:
+def refused(cases: Sequence[Scored], tests: Sequence[Test]) -> list[str]:
     """Tests that came to no diagnosis, which are in no figure, with the reason; nothing where all did."""
     reasons = [f"- {c.answer['id']}: {c.failure.strip().splitlines()[-1]}" for c in cases if c.failure]
-    said = f"{len(reasons)} of {len(cases)} came to no diagnosis and are in no figure:"
+    there = {c.answer["id"] for c in cases}
+    reasons += [f"- {test.id}: not diagnosed by this version" for test in tests if test.id not in there]
+    said = f"{len(reasons)} of {len(tests)} came to no diagnosis and are in no figure:"
     return ["", said, "", *reasons] if reasons else []
 
 
@@ -257,14 +258,14 @@ def main() -> int:
                 broken += 1
                 print(f"{done}/{len(todo)} {name}: {seconds}", file=sys.stderr, flush=True)
                 continue
-            (one,) = scored([t for t in todo if t.id == name], root)
+            (one,) = scored([t for t in todo if t.id == name], root, digest)
             said = ", ".join(f"{n} {p:.2f}" for n, p in one.stated.items()) or one.failure or "none"
             mark = "WRONG" if one.wrong else ("ok" if one.exact else "-")
             print(f"{done}/{len(todo)} {name} {seconds:.0f} s {mark}: {'+'.join(one.hidden) or 'nothing'} -> {said}",
                   file=sys.stderr, flush=True)  # fmt: skip
-    cases = scored(tests, root)
+    cases = scored(tests, root, digest)
     whole = [c for c in cases if not c.failure]
-    lines = [*(table(whole) if asked.set in OF_WORLDS else figures(whole)), *refused(cases), "", *listing(cases)]
+    lines = [*(table(whole) if asked.set in OF_WORLDS else figures(whole)), *refused(cases, tests), "", *listing(cases)]
     print("\n".join(lines))
     if todo:
         print(f"\n{len(todo)} tests in {(perf_counter() - started) / 60.0:.1f} minutes", file=sys.stderr)

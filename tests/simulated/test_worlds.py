@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.worlds import Scored, figures, refused
+from benchmarks.reference_engine import Reference
+from benchmarks.worlds import Scored, Study, figures, found_path, refused, run_one, scored
 from benchmarks.worlds_table import table
 from simulated.blind import nitrous
 from simulated.blind import slots as s
 from simulated.blind import stand as blind
 from simulated.blind.effects import EFFECTS, Hidden, slots_of
+from simulated.engines import maelstrom
 from simulated.worlds import laws, reference
 from simulated.worlds.engines import ENGINES, drawn, simulated
 from simulated.worlds.engines import QUICK as ENGINES_OF_QUICK
@@ -165,15 +167,37 @@ def test_what_is_stated_surely_beside_the_right_name_is_wrong_all_the_same() -> 
 
 
 def test_what_came_to_no_diagnosis_is_no_right_answer_and_is_said() -> None:
-    quiet = case("none", (), "none", {})
-    failed = replace(quiet, product={}, failure="raw/Q/test.toml: no tank\nexpected [tank]")
+    first, second, third = plan()[:3]
+    quiet, failed = (case("none", (), "none", {}) for _ in range(2))
+    quiet.answer["id"] = first.id
+    failed.answer["id"] = second.id
+    failed = replace(failed, product={}, failure="raw/Q/test.toml: no tank\nexpected [tank]")
     assert not failed.exact
-    assert refused([quiet]) == []
-    assert refused([quiet, failed])[1:] == [
-        "1 of 2 came to no diagnosis and are in no figure:",
+    assert refused([quiet], [first]) == []
+    assert refused([quiet, failed], [first, second, third])[1:] == [
+        "2 of 3 came to no diagnosis and are in no figure:",
         "",
-        "- Q: expected [tank]",
+        f"- {second.id}: expected [tank]",
+        f"- {third.id}: not diagnosed by this version",
     ]
+
+
+def test_a_test_that_breaks_stops_no_other_and_what_an_older_version_found_does_not_stand_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("a defect")
+
+    monkeypatch.setattr("benchmarks.worlds.diagnosed", broken)
+    (first,) = plan()[:1]
+    kept = found_path(first, tmp_path)
+    kept.parent.mkdir()
+    kept.write_text(json.dumps({"digest": "older", "seconds": 1.0, "failure": "", "product": {}}), encoding="utf-8")
+    (tmp_path / "answers").mkdir()
+    (tmp_path / "answers" / f"{first.id}.json").write_text("{}", encoding="utf-8")
+    assert run_one(first.id, Study(tmp_path, (first,), "now")) == "ZeroDivisionError: a defect"
+    assert scored([first], tmp_path, "now") == []
+    assert len(scored([first], tmp_path, "older")) == 1
 
 
 def test_scored_worlds_are_one_draw_each_and_their_tests_are_their_own() -> None:
@@ -201,6 +225,16 @@ def test_all_tests_of_a_world_have_its_laws_and_an_answer_says_how_far_rivals_ar
     for answer in answers:
         for effect in answer["effects"].values():
             assert 0.0 <= effect["to_rivals"] <= effect["d_prime"] + 1e-9
+
+
+def test_burnt_gas_that_has_left_the_reference_solvers_chamber_leaves_the_cold() -> None:
+    """What is left of it vanishes, and the solver may try less than nothing of it: its mixture stays what it was."""
+    solver = Reference(maelstrom(), liquid=False, burning=False, burnt_of=6.0)
+    end = np.array([1e-3, 0.0, 250.0, 0.03, -1e-12, 2e-13, 1e5, 0.0, 0.0, 0.0, 0.0, 2e-3, 300.0])
+    volume = solver.engine.dead_volume + np.pi * end[3] ** 2 * solver.engine.grain_length
+    pressure, gas = solver.held(end)
+    assert pressure == pytest.approx(end[12] / volume, rel=1e-6)
+    assert gas.temperature > 0.0
 
 
 def test_a_log_of_the_reference_solver_is_read(tmp_path: Path) -> None:
