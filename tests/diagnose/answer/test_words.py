@@ -16,6 +16,7 @@ from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     _LACKING,
     _NAMED_PLACES,
+    _part_of,
     effect_sentences,
     equation_sentence,
     gap_line,
@@ -204,3 +205,18 @@ def test_what_a_source_says_names_what_it_is_of_on_either_side(forms: tuple[str,
     for form in forms:
         assert form.count("{size}") == 1
         assert not form.startswith(("it ", "It "))
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        (0.0043, "0.43 % of"),
+        (0.15, "15 % of"),
+        (0.99, "99 % of"),
+        (0.997, "all of"),
+        (3.61, "3.6 times"),
+        (140.0, "140 times"),
+    ],
+)
+def test_a_part_is_said_in_figures_that_are_read(part: float, words: str) -> None:
+    assert _part_of(part) == words

@@ -287,11 +287,20 @@ def place_sentence(row: Place, last: float | None = None) -> str:
     return joined("", [f"{_span(row, last)} {before}", size, f"{after}.{mostly}{_share(row)}{left}"])
 
 
+def _part_of(part: float) -> str:
+    """How large a part [-] is, in words that go before its whole; a whole and more in times it."""
+    if 0.995 <= part < 1.05:
+        return "all of"
+    if part >= 1.05:
+        return f"{part:.2g} times" if part < 99.5 else f"{part:.0f} times"
+    return f"{100.0 * part:.2g} % of"
+
+
 def _share(row: Place) -> str:
     """How large it is beside what it is a part of."""
     if row.part is None:
         return ""
-    part = f"{100.0 * row.part:.2g} % of"
+    part = _part_of(row.part)
     if row.equation == "grain":
         return f" In all it is {part} the fuel, burnt at another time."
     whole = WHOLES.get(f"{row.equation} {row.source.unit}", WHOLES.get(row.equation, "the oxidizer's flow"))
