@@ -84,7 +84,8 @@ def test_of_a_sensor_it_is_a_part_of_what_it_reads() -> None:
     assert read.part == pytest.approx(np.abs(read.history.mean).max() / largest)
     assert "% of the largest reading." in str(place_sentence(read))
     assert "% of the thrust." in str(place_sentence(row()))
-    assert "% of the fuel, burnt at another time." in str(place_sentence(row(equation="grain")))
+    of_fuel = row(equation="grain").but(part=0.021)
+    assert "In all it is 2.1 % of the fuel, burnt at another time." in str(place_sentence(of_fuel))
     assert row(equation="sensor", channel="no_such").part is None
 
 
