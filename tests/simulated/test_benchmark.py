@@ -669,9 +669,10 @@ def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_i
     log = folder.runs / "log" / "workers.log"
     few = few_effects.environment(tmp_path)
     with subprocess.Popen(run, cwd=ROOT, env=few, stderr=subprocess.PIPE, text=True, preexec_fn=interruptible) as first:
-        until(lambda: len(folder.notes()) > 0)
+        until(lambda: len(started(log)) == 2)
         killed, held = (int(number) for number in started(log))
-        os.kill(held, signal.SIGSTOP)  # or it might be done with the rest before the other is replaced
+        os.kill(held, signal.SIGSTOP)  # all cases are the other's then: it has one whenever it dies
+        until(lambda: len(folder.notes()) > 0)
         os.kill(killed, signal.SIGKILL)
         until(lambda: len(started(log)) == 3)
         first.send_signal(signal.SIGINT)

@@ -13,7 +13,7 @@ from simulated.worlds import laws
 from simulated.worlds.engines import drawn, simulated
 from tests.segment.stand import signal
 
-from hfanalysis.inference.observations.flame import FlameOut, flame_out
+from hfanalysis.inference.observations.flame import FlameOut, OverFlow, flame_out, shown_to_burn
 from hfanalysis.thermo.nitrous import saturation
 
 FADES = (0.01, 0.03, 0.3)
@@ -32,21 +32,31 @@ def run(end: str, mixing: float, tail: float = 1e-3) -> tuple[Stand, Histories]:
     return stand, simulated(stand, world(mixing, tail))
 
 
-def found(stand: Stand, true: Histories, chamber: float = 1.0) -> FlameOut | None:
-    """What is found in its pressures, the chamber's times a factor."""
+def over_flow(
+    stand: Stand, true: Histories, chamber: float = 1.0, end: float | None = None, run: bool = True
+) -> OverFlow:
+    """Its pressures up to an end, the chamber's times a factor, with a gauge before the injector or without."""
     rng = np.random.default_rng(2)
     read = [
         signal(name, true.time[::4], k * true.trace(which)[::4] + 5e3 * rng.standard_normal(true.time[::4].size))
         for name, which, k in (("p_tank", s.P_TANK, 1.0), ("p_run", s.P_RUN, 1.0), ("p_chamber", s.P_CHAMBER, chamber))
     ]
-    return flame_out(*read, saturation(), true.t_v, stand.closing)
+    made = OverFlow.of(read[0], read[1] if run else None, read[2], saturation(), true.t_v, end or stand.closing)
+    assert made is not None
+    return made
 
 
+def found(stand: Stand, true: Histories, chamber: float = 1.0, run: bool = True) -> FlameOut | None:
+    """What is found in its pressures."""
+    return flame_out(over_flow(stand, true, chamber, run=run))
+
+
+@pytest.mark.parametrize("gauge", [True, False])
 @pytest.mark.parametrize("mixing", FADES)
 @pytest.mark.parametrize("end", ["early", "together"])
-def test_the_end_of_a_flame_is_found_where_liquid_or_its_end_hides_it(end: str, mixing: float) -> None:
+def test_the_end_of_a_flame_is_found_where_liquid_or_its_end_hides_it(end: str, mixing: float, gauge: bool) -> None:
     stand, true = run(end, mixing)
-    flame = found(stand, true)
+    flame = found(stand, true, run=gauge)
     assert flame is not None
     assert -0.15 < flame.begins - true.t_fuel_out < 0.05 + 0.1 * mixing
     assert flame.out < true.t_fuel_out + 0.15 + 2.5 * mixing
@@ -83,3 +93,40 @@ def test_a_gauge_that_reads_a_tenth_less_changes_nothing() -> None:
     assert one is not None
     assert other is not None
     assert other.begins == pytest.approx(one.begins, abs=0.05)
+
+
+@pytest.mark.parametrize("gauge", [True, False])
+@pytest.mark.parametrize("after", [0.3, 0.5])
+def test_a_fade_that_the_log_does_not_show_to_its_end_leaves_a_flame_up_to_where_it_begins(
+    after: float, gauge: bool
+) -> None:
+    stand, true = run("together", 0.6)
+    seen = over_flow(stand, true, end=max(true.t_v, true.t_fuel_out) + after, run=gauge)
+    assert flame_out(seen) is None
+    shown = shown_to_burn(seen, stand.ambient, None)
+    assert shown is not None
+    assert -0.3 < shown - true.t_fuel_out < 0.2
+
+
+@pytest.mark.parametrize("gauge", [True, False])
+@pytest.mark.parametrize("seed", range(4))
+def test_fuel_that_lasts_is_shown_to_burn(seed: int, gauge: bool) -> None:
+    rng = np.random.default_rng(6_900_100 + seed)
+    here = laws.draw(rng)
+    stand = drawn(rng, ("1 kN", "2 kN", "4 kN", "9 kN")[seed], "left", here)
+    true = simulated(stand, here)
+    for end in (true.t_v, true.t_v + 0.3, stand.closing):
+        seen = over_flow(stand, true, end=end, run=gauge)
+        assert shown_to_burn(seen, stand.ambient, end) is None
+
+
+def test_a_tap_that_lags_is_no_fade() -> None:
+    stand, true = run("left", 0.01)
+    traces, lag = true.traces.copy(), 0.12
+    step = float(true.time[1] - true.time[0])
+    read = traces[:, s.P_CHAMBER].copy()
+    for i in range(1, read.size):
+        read[i] = read[i - 1] + (traces[i, s.P_CHAMBER] - read[i - 1]) * step / lag
+    traces[:, s.P_CHAMBER] = read
+    seen = over_flow(stand, replace(true, traces=traces), end=min(true.t_v + 1.0, stand.closing))
+    assert shown_to_burn(seen, stand.ambient, None) is None

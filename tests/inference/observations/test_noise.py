@@ -190,6 +190,30 @@ def test_gaps_are_no_oscillation() -> None:
     assert holed == pytest.approx(whole, rel=0.25)
 
 
+def of_samples(seed: int, every: Array) -> Array:
+    """Covariance (blocks, blocks) of the chamber's oscillation where only some blocks hold a sample."""
+    blocks, level = shaken(seed)
+    usable = np.zeros(BLOCKS, dtype=bool)
+    usable[every] = True
+    empty = {name: np.where(usable, values, 0.0) for name, values in blocks.items()}
+    spacing = BLOCKS / every.size
+    sensors = {"p_chamber": SENSOR, "thrust": SENSOR}
+    return oscillation(empty, level, usable, sensors, spacing)["p_chamber", "p_chamber"]
+
+
+@pytest.mark.parametrize("clock", ["25 Hz", "50 Hz with jitter"])
+def test_the_oscillation_is_measured_in_a_slow_log(clock: str) -> None:
+    rng = np.random.default_rng(8)
+    stamps = np.arange(BLOCKS) + rng.uniform(-0.7, 0.7, BLOCKS) + 0.5
+    every = np.arange(0, BLOCKS, 2) if clock == "25 Hz" else np.unique(stamps.astype(int).clip(0, BLOCKS - 1))
+    assert every.size < 0.9 * BLOCKS
+    found = [of_samples(seed, every) for seed in SEEDS]
+    assert 0.8 * VARIANCE < np.mean([each[0, 0] for each in found]) < 1.25 * VARIANCE
+    # by the time between, not by the number of samples between: correlated as blocks are that far apart
+    known = np.mean([covariances(seed)["p_chamber", "p_chamber"] for seed in SEEDS], axis=0)
+    assert np.sign(np.mean([each[0, 4] for each in found])) == np.sign(known[0, 4])
+
+
 def test_channels_of_their_own_have_little_in_common() -> None:
     rng = np.random.default_rng(5)
     apart = {name: size * rng.standard_normal(BLOCKS) for name, size in (("p_chamber", 1.0), ("thrust", 2.0))}

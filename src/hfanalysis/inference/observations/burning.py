@@ -7,7 +7,9 @@ chamber's pressure over the flow tells that there is no flame.
 
 from __future__ import annotations
 
-from hfanalysis.inference.observations.flame import FlameOut, flame_out
+from dataclasses import dataclass
+
+from hfanalysis.inference.observations.flame import FlameOut, OverFlow, flame_out, shown_to_burn
 from hfanalysis.inference.observations.recorded import LONGEST_RECORD, signal_of
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
@@ -24,11 +26,21 @@ LATE = 0.1
 BEYOND = 0.5
 """Seconds after t_end that are looked at: the pressure of a chamber without a flame may be below its limit at once."""
 
-PRESSURES = ("p_tank", "p_run", "p_chamber")
+NEEDED = ("p_tank", "p_chamber")
+"""Channels without which nothing tells of a flame."""
 
 
-def as_it_burns(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> Segments:
-    """The segments with the end of the fuel where the flame begins to go out; as they are where it goes out at once.
+@dataclass(frozen=True)
+class Burning:
+    """The segments with the end of the fuel where the flame begins to go out; and until when a flame is ``shown`` [s
+    after the opening], where it is neither shown to go out nor to burn to the end."""
+
+    segments: Segments
+    shown: float | None = None
+
+
+def as_it_burns(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> Burning:
+    """How the chamber burns; the segments are as they were where the flame goes out at once, or not at all.
 
     ``origin``: of the opening [s of the log].
     """
@@ -38,11 +50,19 @@ def as_it_burns(log: TestLog, segments: Segments, definition: TestDefinition, or
         segments = ended(segments, begins, std)
     gone = segments.time("t_fuel_gone")
     if gone is None and _left(definition):
-        return segments
-    found = _flame_out(log, segments, definition, origin)
-    if found is None or (gone is not None and gone < found.begins + LATE):
-        return segments
-    return ended(segments, found.begins, found.std)
+        return Burning(segments)
+    seen = _over_flow(log, segments, definition, origin)
+    if seen is None:
+        return Burning(segments)
+    found, shown = flame_out(seen), None
+    if found is None:
+        last = segments.time("t_end") if gone is None else segments.time("t_fuel_out")
+        shown = shown_to_burn(seen, definition.ambient_pressure.value, last)
+        if shown is not None and gone is not None:
+            found, shown = FlameOut(shown, gone), None
+    if found is not None and (gone is None or gone >= found.begins + LATE):
+        return Burning(ended(segments, found.begins, found.std))
+    return Burning(segments, shown)
 
 
 def _left(definition: TestDefinition) -> bool:
@@ -57,14 +77,14 @@ def ended(segments: Segments, at: float, std: float) -> Segments:
     return segments.but(t_fuel_out=end, t_fuel_gone=end)
 
 
-def _flame_out(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> FlameOut | None:
-    """When the chamber is found to burn no more; None where it is not, or a pressure is missing."""
-    if not set(PRESSURES) <= set(log.channels):
+def _over_flow(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> OverFlow | None:
+    """What tells of a flame in the chamber; None where a pressure for it is missing."""
+    if not set(NEEDED) <= set(log.channels):
         return None
-    tank, run, chamber = (signal_of(log, name, origin) for name in PRESSURES)
-    if tank.dead or run.dead or chamber.dead:
+    tank, chamber = (signal_of(log, name, origin) for name in NEEDED)
+    if tank.dead or chamber.dead:
         return None
-    table = saturation(definition.model.properties)
-    return flame_out(
-        tank, run, chamber, table, segments.time("t_v"), (segments.time("t_end") or LONGEST_RECORD) + BEYOND
-    )
+    run = signal_of(log, "p_run", origin) if "p_run" in log else None
+    end = (segments.time("t_end") or LONGEST_RECORD) + BEYOND
+    run = None if run is None or run.dead else run
+    return OverFlow.of(tank, run, chamber, saturation(definition.model.properties), segments.time("t_v"), end)

@@ -253,6 +253,7 @@ def _shaken(shaken: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str],
     else:
         level = np.ones(usable.size)
     stds = {name: wander_of(r.signal, BLOCK).white for name, r in shaken.items()}
-    found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
+    spacing = max(r.signal.step for r in shaken.values()) / BLOCK
+    found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds, spacing)
     around = (frame.flowing.start, frame.grid.size - frame.flowing.stop)
     return {pair: np.pad(matrix, around) for pair, matrix in found.items()}

@@ -2,12 +2,14 @@
 
 Fuel that ends together with the liquid, or fades for a second, leaves no fall of chamber pressure and thrust against
 the feed that could be dated. But cold nitrous oxide has a fifth of the characteristic velocity: for the flow that
-enters, the pressure of a chamber without a flame is a fifth of what it was.
+enters, the pressure of a chamber without a flame is a fifth of what it was. Where that ratio falls to the end of the
+log and does not come so low, nobody knows whether the chamber still burns: a flame is shown up to where the fall
+begins.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +35,8 @@ BURNING = 0.94
 """Of the ratio within the last BEFORE, down to which the chamber burns on as before [-]. Evidence: in worlds whose fuel
 lasts (simulated/worlds, development set) the mixture moves it by less within that time."""
 
-BEFORE = 0.6
-"""Seconds."""
+BEFORE, SHORTEST = 0.6, 0.5
+"""Seconds; and the part of them for which the change of a mixture is taken at least, where fewer are there to see."""
 
 RANGE = 1e5, 70e5
 """Pressures [Pa] between which the table of nitrous oxide is asked."""
@@ -45,8 +47,18 @@ OVER, STANDS = 8, 0.2
 FALLS = 3
 """Instants in a row without a flame."""
 
-AT_LIQUID_OUT = 0.35
-"""Seconds after the end of the liquid within which a flame that is out then went out with it, or before."""
+FIRST = 1.5
+"""Seconds over which the ratio of a flame is taken."""
+
+SETTLES = 0.1
+"""Seconds after the end of the liquid before the flow is that of vapor alone: knees are rounded."""
+
+SMOOTH = 5
+"""Instants over which the ratio is averaged before a fall that does not become cold is believed."""
+
+CHOKED = 1.9
+"""Chamber over ambient pressure below which its nozzle is not choked and the ratio no characteristic velocity [-].
+Source: ((gamma + 1) / 2)^(gamma / (gamma - 1)), 1.8 for gamma 1.2 to 1.3, and a margin."""
 
 
 @dataclass(frozen=True)
@@ -62,28 +74,104 @@ class FlameOut:
         return (self.out - self.begins) / float(np.sqrt(12.0))
 
 
-def flame_out(
-    tank: Signal, run: Signal, chamber: Signal, saturation: Saturation, t_v: float | None, end: float
-) -> FlameOut | None:
-    """When the flame goes out while oxidizer still flows; None where it does not, or where that cannot be told.
+LIQUID, SETTLING, VAPOR = range(3)
+"""What flows at an instant; SETTLING: neither is known to, or not alone."""
 
-    Signals [Pa] with times after the opening; ``t_v`` and the ``end`` of what is looked at [s after the opening].
+
+@dataclass(frozen=True)
+class OverFlow:
+    """The chamber's pressure over what enters, up to a constant (n,), nan where hardly anything flows.
+
+    ``times`` [s after the opening]; ``tank`` and ``chamber`` (n,) [Pa]; ``phase`` (n,): LIQUID, SETTLING or VAPOR.
     """
-    times = np.arange(SETTLED, min(end, *(float(s.time[-1]) for s in (tank, run, chamber))) - LOOK, LOOK)
-    if times.size < 4 * FALLS:
-        return None
-    p_t, p_r, p_c = (_means(s, times) for s in (tank, run, chamber))
-    wet = times < (np.inf if t_v is None else t_v)
-    ratio = _over_flow(p_t, p_r, p_c, saturation, wet)
-    usual = float(np.nanmedian(ratio[times < min(times[-1], t_v or np.inf, times[0] + 1.5)]))
-    cold = np.nan_to_num(ratio, nan=np.inf) < np.where(wet, COLD_IN_LIQUID, COLD) * usual
+
+    times: Array
+    tank: Array
+    chamber: Array
+    ratio: Array
+    phase: NDArray[np.int64]
+
+    @classmethod
+    def of(
+        cls, tank: Signal, run: Signal | None, chamber: Signal, saturation: Saturation, t_v: float | None, end: float
+    ) -> OverFlow | None:
+        """Of pressures [Pa] with times after the opening; None where too little is there to look at.
+
+        Without ``run``, the pressure before the injector, that of the tank stands for it: what is lost between goes by
+        the square of the flow as well, and the ratio is compared within one test. ``t_v`` and the ``end`` of what is
+        looked at [s after the opening].
+        """
+        ahead = tank if run is None else run
+        last = min(end, *(float(s.time[-1]) for s in (tank, ahead, chamber)))
+        times = np.arange(SETTLED, last - LOOK, LOOK)
+        if times.size < 4 * FALLS:
+            return None
+        p_t, p_r, p_c = (_means(s, times) for s in (tank, ahead, chamber))
+        dry = np.inf if t_v is None else t_v
+        ratio = _over_flow(p_t, p_r, p_c, saturation, times < dry)
+        return cls(times, p_t, p_c, ratio, (times >= dry) * SETTLING + (times >= dry + SETTLES) * (VAPOR - SETTLING))
+
+    @property
+    def usual(self) -> float:
+        """The ratio of the flame at first, while liquid flows; nan where that is not known."""
+        first = self.ratio[(self.phase == LIQUID) & (self.times < self.times[0] + FIRST)]
+        return float(np.nanmedian(first)) if np.isfinite(first).any() else np.nan
+
+    def smooth(self) -> OverFlow:
+        """The same with running means of the ratio, each over instants of one phase."""
+        parts = [_running(self.ratio[self.phase == phase]) for phase in (LIQUID, SETTLING, VAPOR)]
+        return replace(self, ratio=np.concatenate(parts))
+
+    def falls(self, at: int, within: float = BEFORE) -> bool:
+        """Whether the ratio has fallen to that of an instant by more than a mixture moves it ``within`` some seconds,
+        in one phase."""
+        seen = (self.times[:at] >= self.times[at] - within) & (self.phase[:at] == self.phase[at])
+        before = self.ratio[:at][seen & np.isfinite(self.ratio[:at])]
+        if self.phase[at] == SETTLING or not before.size:
+            return False
+        part = max(before.size * LOOK / BEFORE, SHORTEST)
+        return bool(self.ratio[at] <= BURNING**part * before.max())
+
+    def began(self, at: int) -> int:
+        """From when on the ratio falls that is low at an instant: from the end of the liquid, or before it, where the
+        fall lasts longer than the flame has burnt with vapor, for that shows no flame that burnt evenly."""
+        first = self._back(at)
+        dry = int((self.phase == LIQUID).sum())
+        shown = (self.phase[dry:first] == VAPOR).any() and first - dry > at - first
+        return first if shown or not 1 < dry <= first else self._back(dry - 1)
+
+    def _back(self, at: int) -> int:
+        while at > 1 and self.falls(at):
+            at -= 1
+        return at
+
+
+def flame_out(seen: OverFlow) -> FlameOut | None:
+    """When the flame goes out while oxidizer still flows; None where it does not, or where that cannot be told."""
+    usual = seen.usual
+    cold = np.nan_to_num(seen.ratio, nan=np.inf) < np.where(seen.phase == LIQUID, COLD_IN_LIQUID, COLD) * usual
     run_of = np.convolve(cold, np.ones(FALLS), mode="valid") == FALLS
-    if not np.isfinite(usual) or not run_of.any():
+    if not run_of.any():
         return None
     out = int(np.argmax(run_of))
-    if not _flows_on(times, p_t, out):
+    if not _flows_on(seen.times, seen.tank, out):
         return None
-    return FlameOut(_began(times, ratio, out, usual, t_v), float(times[out]))
+    return FlameOut(float(seen.times[seen.began(out)]), float(seen.times[out]))
+
+
+def shown_to_burn(seen: OverFlow, ambient: float, end: float | None) -> float | None:
+    """Until when a flame is shown [s after the opening], where the ratio falls to the end; None where it burns on.
+
+    ``ambient``: pressure [Pa]; ``end``: of the flow [s after the opening], if it is known.
+    """
+    even = seen.smooth()
+    flows = even.times < (np.inf if end is None else end - LOOK)
+    choked = np.flatnonzero(np.isfinite(even.ratio) & flows & (even.chamber > CHOKED * ambient))
+    if not choked.size:
+        return None
+    last = int(choked[-1])
+    # what a gauge lags behind the liquid's end falls at first only
+    return float(even.times[even.began(last)]) if even.falls(last) and even.falls(last, SHORTEST * BEFORE) else None
 
 
 def _flows_on(times: Array, p_t: Array, out: int) -> bool:
@@ -93,20 +181,6 @@ def _flows_on(times: Array, p_t: Array, out: int) -> bool:
         return False
     before = (p_t[back] - p_t[out]) / (times[out] - times[back])
     return bool((p_t[out] - p_t[ahead]) / (times[ahead] - times[out]) > STANDS * before)
-
-
-def _began(times: Array, ratio: Array, out: int, usual: float, t_v: float | None) -> float:
-    """From when on the ratio falls that is that of cold gas at ``out``; from the liquid's end at the latest,
-    where it is so right after."""
-    first = out
-    if t_v is not None and 0.0 < times[out] - t_v < AT_LIQUID_OUT:
-        first = max(int(np.searchsorted(times, t_v)) - 1, 1)
-    while first > 1:
-        window = ratio[(times >= times[first] - BEFORE) & (times < times[first])]
-        if not np.isfinite(window).any() or ratio[first] > BURNING * np.nanmax(window):
-            break
-        first -= 1
-    return float(times[first])
 
 
 def _over_flow(p_t: Array, p_r: Array, p_c: Array, saturation: Saturation, wet: NDArray[np.bool_]) -> Array:
@@ -124,3 +198,14 @@ def _means(signal: Signal, times: Array) -> Array:
     missing = ~np.isfinite(found)
     found[missing] = signal.at(times[missing])
     return found
+
+
+def _running(values: Array) -> Array:
+    """Running means (n,) over SMOOTH values, fewer at the ends; nan where none of them is known."""
+    known = np.isfinite(values)
+    if not values.size:
+        return values
+    kernel = np.ones(SMOOTH)
+    count = np.convolve(known, kernel, mode="full")[SMOOTH // 2 :][: values.size]
+    total = np.convolve(np.where(known, values, 0.0), kernel, mode="full")[SMOOTH // 2 :][: values.size]
+    return np.where(known, total / np.maximum(count, 1.0), np.nan)

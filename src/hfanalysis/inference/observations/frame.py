@@ -95,14 +95,23 @@ class Frame:
         return slice(self.flowing.stop, self.grid.size)
 
 
-def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> Frame:
-    """The frame of a test that opens at ``origin`` [s of the log]."""
+def frame_of(
+    log: TestLog, segments: Segments, definition: TestDefinition, origin: float, shown: float | None = None
+) -> Frame:
+    """The frame of a test that opens at ``origin`` [s of the log].
+
+    ``shown`` [s after the opening]: until when a flame is shown, where nothing tells whether it burns on. No model
+    knows the chamber's pressure from then on, and the tank's only as far as it empties without fire.
+    """
     last = log_end(log, origin)
-    end = min(_end(segments), last)
-    ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
+    over, burns = min(_end(segments), last), np.inf if shown is None else shown - AROUND_CHANGE
+    end = min(over, burns)
+    ends = {"chamber": end, "tank": min(_tank_end(segments, definition, over), last)}
     fuel_out = segments.time("t_fuel_gone")
     flow_end = flow_end_without_fuel(log, segments, definition, origin)
-    if flow_end is None:
+    if burns < over:
+        fuel_out, ends["p_run"] = shown, end
+    elif flow_end is None:
         fuel_out = None
     else:
         ends["tank"] = min(flow_end - AROUND_END, LONGEST_RECORD)

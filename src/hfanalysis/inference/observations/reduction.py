@@ -35,9 +35,10 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     origin = segments.t_open.value
     if origin is None:
         raise AbsentError("no opening was found: there is nothing to compare")
-    segments = as_it_burns(log, segments, definition, origin)
+    burning = as_it_burns(log, segments, definition, origin)
+    segments = burning.segments
     signals = recorded(log, definition, origin)
-    frame = frame_of(log, segments, definition, origin)
+    frame = frame_of(log, segments, definition, origin, burning.shown)
     unknowns = in_samples(Samples(signals, segments, frame.steady))
     frame = replace(frame, hidden=max((unknown.hides for unknown in unknowns), default=0.0))
     zeros = {name: log[name].zero_std for name in signals}
@@ -69,6 +70,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         alike,
         line.taken if line is not None and alike is not None else None,
         fuel_out=frame.fuel_out,
+        flame_shown=burning.shown,
         unknowns=unknowns,
     )
 
