@@ -114,7 +114,7 @@ def _until_when(observed: Observed) -> tuple[str, ...]:
         return ()
     return (
         f"whether the chamber burns after {shown:.2f} s is unknown, for its pressure falls faster than the flow up to "
-        "the end: chamber and thrust are compared until then",
+        "the end: it is compared until then",
     )
 
 

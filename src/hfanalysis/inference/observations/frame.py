@@ -101,17 +101,14 @@ def frame_of(
     """The frame of a test that opens at ``origin`` [s of the log].
 
     ``shown`` [s after the opening]: until when a flame is shown, where nothing tells whether it burns on. No model
-    knows the chamber's pressure from then on, and the tank's only as far as it empties without fire.
+    knows the chamber's pressure from then on, nor what flows into it; as where a fire is seen to fade.
     """
-    last = log_end(log, origin)
-    over, burns = min(_end(segments), last), np.inf if shown is None else shown - AROUND_CHANGE
-    end = min(over, burns)
-    ends = {"chamber": end, "tank": min(_tank_end(segments, definition, over), last)}
+    last = log_end(log, origin) if shown is None else min(log_end(log, origin), shown - AROUND_CHANGE)
+    end = min(_end(segments), last)
+    ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
     fuel_out = segments.time("t_fuel_gone")
     flow_end = flow_end_without_fuel(log, segments, definition, origin)
-    if burns < over:
-        fuel_out, ends["p_run"] = shown, end
-    elif flow_end is None:
+    if flow_end is None:
         fuel_out = None
     else:
         ends["tank"] = min(flow_end - AROUND_END, LONGEST_RECORD)

@@ -34,8 +34,8 @@ class Observed:
 
     ``grid`` [s]: points at which a model is asked: through the flow, and ``resting`` ones before it, at the opening and
     after it. ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its measured end, at which that of
-    every model ends; ``flame_shown``: until when a flame is shown, where nothing tells whether it burns on, which then
-    stands for that end. ``stated``: what was measured outside the log (SI), or in it beside the blocks (FADE), with
+    every model ends; ``flame_shown`` [s]: until when a flame is shown, where nothing tells whether it burns on.
+    ``stated``: what was measured outside the log (SI), or in it beside the blocks (FADE), with
     standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there;
     ``alike``: the same of ALIKE, which come one after the other; ``line_zero`` [s]: when the zero of the second was
     taken of the first. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
