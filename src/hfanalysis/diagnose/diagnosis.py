@@ -103,11 +103,11 @@ def diagnose(
     sentences = story(product)
     if poor_fit(found.named.leftover):
         sentences += shown(subject).sentences
-    notes = (*subject.notes, *_until_when(found.bench.observed), *one.notes, *product.notes)
+    notes = (*subject.notes, *until_when(found.bench.observed), *one.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
 
 
-def _until_when(observed: Observed) -> tuple[str, ...]:
+def until_when(observed: Observed) -> tuple[str, ...]:
     """What is said where nothing tells whether the chamber burns to the end."""
     shown = observed.flame_shown
     if shown is None:

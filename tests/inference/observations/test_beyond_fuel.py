@@ -13,6 +13,7 @@ from tests.inference import logged
 from tests.products.filled import loaded
 from tests.segment.stand import signal
 
+from hfanalysis.diagnose.diagnosis import until_when
 from hfanalysis.effects import effect
 from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, Engine, burn
@@ -129,6 +130,35 @@ def test_a_fire_that_fades_is_compared_as_before() -> None:
     test = observations(True, log(), fuel_out(), std=1.5 * AT_ONCE)
     assert test.fuel_out is None
     assert max(last(test, name) for name in test.names) < fuel_out()
+
+
+def fading(ends: float, begins: float = 2.0, lasts: float = 1.5) -> TestLog:
+    """The log, whose valve closes at ``ends`` [s] while the fire still fades: to its e-th part of the excess in so
+    long."""
+    whole, out = log(), {}
+    for name, c in whole.channels.items():
+        since = np.maximum(c.time - logged.OPENING - begins, 0.0)
+        closed = c.time - logged.OPENING > ends
+        rest = {"p_chamber": run().steps.engine.ambient, "p_run": run().steps.engine.ambient, "thrust": 0.0}
+        values = c.values.copy()
+        if name in ("p_chamber", "thrust"):
+            values = rest[name] + (values - rest[name]) * np.exp(-since / lasts)
+        after = rest.get(name, float(values[~closed][-1]))
+        out[name] = replace(c, values=np.where(closed, after, values))
+    return TestLog(out)
+
+
+def test_a_fire_that_may_have_faded_when_the_valve_closes_is_compared_until_it_fades() -> None:
+    ends = 2.6
+    unseen = Quantity.absent("not seen")
+    known = logged.segments(t_end=Quantity(ends, "s", 0.01), t_fuel_out=unseen, t_fuel_gone=unseen, t_v=unseen)
+    fades, burns = (observe_test(of, known, logged.stated()) for of in (fading(ends), fading(ends, lasts=1e9)))
+    assert burns.flame_shown is None
+    assert last(burns, "p_tank") > ends - 0.3
+    assert fades.flame_shown == pytest.approx(2.0, abs=0.25)
+    assert max(last(fades, name) for name in fades.names) < fades.flame_shown
+    assert until_when(burns) == ()
+    assert until_when(fades)[0].startswith(f"whether the chamber burns after {fades.flame_shown:.2f} s is unknown")
 
 
 def test_how_fast_liquid_flows_without_fire_is_known_to_a_tenth_only() -> None:
