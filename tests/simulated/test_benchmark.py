@@ -661,7 +661,7 @@ def started(log: Path) -> list[str]:
 
 
 def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_interrupted(tmp_path: Path) -> None:
-    names = [c.id for c in plan(24) if c.kind == "none"][:2]  # no strength has to be found for these: soon written
+    names = [c.id for c in plan(24) if c.kind == "none"][:3]  # no strength has to be found for these: soon written
     limit = [c.id for c in plan(24)].index(names[-1]) + 1
     what = ("--n", "24", "--limit", str(limit), "--kind", "none", "--split", "development")
     run = command("run", *what, "--jobs", "2", "--out", str(tmp_path))
@@ -671,7 +671,7 @@ def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_i
     with subprocess.Popen(run, cwd=ROOT, env=few, stderr=subprocess.PIPE, text=True, preexec_fn=interruptible) as first:
         until(lambda: len(started(log)) == 2)
         killed, held = (int(number) for number in started(log))
-        os.kill(held, signal.SIGSTOP)  # all cases are the other's then: it has one whenever it dies
+        os.kill(held, signal.SIGSTOP)  # all cases are the other's then: it has one when it dies, and one more waits
         until(lambda: len(folder.notes()) > 0)
         os.kill(killed, signal.SIGKILL)
         until(lambda: len(started(log)) == 3)
@@ -679,15 +679,15 @@ def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_i
         assert "goes on from here" in first.communicate(timeout=60)[1]
     assert first.returncode == 130
     kept = {name: (folder.runs / f"{name}.json").read_bytes() for name in folder.notes()}
-    assert len(kept) == 1
+    assert 1 <= len(kept) < 3
     again = subprocess.run(run, cwd=ROOT, env=few, capture_output=True, text=True, check=False)
     assert again.returncode == 0, again.stderr
-    assert "1 done, 1 to diagnose" in again.stderr
+    assert f"{len(kept)} done, {3 - len(kept)} to diagnose" in again.stderr
     assert all((folder.runs / f"{name}.json").read_bytes() == note for name, note in kept.items())
     assert {n.id: n.status for n in folder.notes().values()} == dict.fromkeys(names, fo.DONE)
     assert all(folder.product(name).exists() for name in names)
     page = tmp_path / "page.md"
     table = command("table", "--split", "development", "--out", str(tmp_path), "--write", str(page))
     assert subprocess.run(table, cwd=ROOT, check=False).returncode == 0
-    assert "| diagnosed or failed | 2 |" in page.read_text()
+    assert "| diagnosed or failed | 3 |" in page.read_text()
     assert "--kind none`" in page.read_text()
