@@ -22,10 +22,8 @@ from hfanalysis.thermo.combustion_table import Grid, gas_at
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
 """Indices of REGIMES."""
 
-SMALL_EXCESS, SMALL_PART = 1e-3, 0.1
-"""Excess of the chamber's over the ambient pressure, relative [-], below which the exit velocity falls linearly; and
-the most that may be as part of the excess at which the throat chokes. Evidence: with a tenth of it a run whose fire is
-out takes half as many steps again."""
+SMALL_EXCESS = 1e-4
+"""Excess of the chamber's over the ambient pressure, relative [-], below which the exit velocity falls linearly."""
 
 REGIMES = ("subsonic", "shock in the diverging part", "supersonic")
 
@@ -180,8 +178,7 @@ def expand(
         if ambient >= pressure * pressure_ratio(first, gamma):
             mach = mach_at_pressure(ambient / pressure, gamma)
             # flow grows as the root of the excess pressure: bent to a finite slope where solvers would stall
-            bent = min(SMALL_EXCESS, SMALL_PART * (1.0 / pressure_ratio(first, gamma) - 1.0))
-            x = min((pressure / ambient - 1.0) / bent, 1.0)
+            x = min((pressure / ambient - 1.0) / SMALL_EXCESS, 1.0)
             mach *= 0.5 * np.sqrt(x) * (3.0 - x)
             return ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
     full = mach_at_area(ratio, gamma, True)

@@ -439,7 +439,7 @@ def test_a_form_without_hope_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None
 
     monkeypatch.setattr(Bench, "refitted", seen)
     hopeful, count = found.bench.judged(base), len(ran)
-    monkeypatch.setattr("hfanalysis.inference.candidate.FAR_DOUBT", np.inf)
+    monkeypatch.setattr("hfanalysis.inference.candidate.DOUBT", np.inf)
     all_of_them = found.bench.judged(base)
     assert hopeful.form == all_of_them.form
     assert hopeful.log_evidence == pytest.approx(all_of_them.log_evidence, abs=0.1)
