@@ -108,7 +108,7 @@ class OverFlow:
             return None
         p_t, p_r, p_c = (_means(s, times) for s in (tank, ahead, chamber))
         dry = np.inf if t_v is None else t_v
-        ratio = _over_flow(p_t, p_r, p_c, saturation, times < dry)
+        ratio = _ratio(p_t, p_r, p_c, saturation, times < dry)
         return cls(times, p_t, p_c, ratio, (times >= dry) * SETTLING + (times >= dry + SETTLES) * (VAPOR - SETTLING))
 
     @property
@@ -183,7 +183,7 @@ def _flows_on(times: Array, p_t: Array, out: int) -> bool:
     return bool((p_t[out] - p_t[ahead]) / (times[ahead] - times[out]) > STANDS * before)
 
 
-def _over_flow(p_t: Array, p_r: Array, p_c: Array, saturation: Saturation, wet: NDArray[np.bool_]) -> Array:
+def _ratio(p_t: Array, p_r: Array, p_c: Array, saturation: Saturation, wet: NDArray[np.bool_]) -> Array:
     """Chamber pressure over what the orifice passes, up to a constant (n,); nan where hardly anything flows."""
     temperature = saturation.temperature(np.clip(p_t, *RANGE))
     density = np.where(wet, saturation.liquid_density(temperature), saturation.vapor_density(temperature))
