@@ -17,8 +17,8 @@ SETS = {
     "scored": 9_000_000,
 }
 """Where the seeds of each begin. Constants in the code come of ``development``; what the diagnosis says of where it was
-tried of ``calibration`` (with every engine and logger); those of ``quick`` and ``scored`` set nothing. ``looked_at`` was
-scored once, and changes came of what was seen there."""
+tried of ``calibration`` (with every engine and logger); those of ``quick`` and ``scored`` set nothing. ``looked_at``
+was scored once, and changes came of what was seen there."""
 
 WIDE = ("calibration",)
 """Sets with all engines and loggers, laws drawn test by test; others of that kind have the first four of each."""
