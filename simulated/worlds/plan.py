@@ -14,7 +14,7 @@ SETS = {
     "development": 6_000_000,
     "calibration": 7_000_000,
     "looked_at": 8_000_000,
-    "scored": 9_000_000,
+    "scored": 10_000_000,
 }
 """Where the seeds of each begin. Constants in the code come of ``development``; what the diagnosis says of where it was
 tried of ``calibration`` (with every engine and logger); those of ``quick`` and ``scored`` set nothing. ``looked_at``

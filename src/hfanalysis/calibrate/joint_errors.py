@@ -66,9 +66,10 @@ def freed(found: Candidate, observed: Observed, effects: Sequence[Active], defin
     hypothesis, x = _with_parameters(*_with_levels(told.hypothesis, told.x), effects)
     hypothesis = with_ranges(hypothesis, definition)
     x = np.pad(x, (0, hypothesis.size - x.size))
-    for more in (with_departures, with_courses):
-        hypothesis, observed = more(hypothesis, observed, x)
-        x = np.pad(x, (0, hypothesis.size - x.size))
+    hypothesis = with_departures(hypothesis, observed, x)
+    x = np.pad(x, (0, hypothesis.size - x.size))
+    hypothesis, observed = with_courses(hypothesis, observed, x)
+    x = np.pad(x, (0, hypothesis.size - x.size))
     tempered, place, fits = Bench(observed).at(found.form), hypothesis.names.index("n"), list[Fit]()
     n = hypothesis.free[place]
     for away in (0.0, -AWAY, AWAY):

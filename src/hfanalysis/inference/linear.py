@@ -61,7 +61,7 @@ class Linearized:
         """Those of the places that have no source yet, with splines at each; what is projected is whitened, by
         coefficients in the unit of the place."""
         hypothesis, observed = self.fitted.hypothesis, self.observed
-        engine = hypothesis.at(self.fitted.x)
+        engine = hypothesis.as_run(self.fitted.x)
         taken = {a.effect.name for a in engine.effects}
         probes = {place: probe(place.name, splines, place.typical) for place in places}
         probes = {place: effect for place, effect in probes.items() if effect.name not in taken}

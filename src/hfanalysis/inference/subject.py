@@ -58,7 +58,9 @@ class Subject:
         """
         hypothesis = self.hypothesis()
         observed = with_abrupt_end(self.observed(), hypothesis.engine)
-        return (hypothesis, observed) if as_run else with_departures(with_ranges(hypothesis, self.definition), observed)
+        if as_run:
+            return hypothesis, observed
+        return with_departures(with_ranges(hypothesis, self.definition), observed), observed
 
 
 def _purge(subject: Subject) -> dict[str, float]:

@@ -12,6 +12,7 @@ from hfanalysis.diagnose.naming.polish import ROUNDS, polished
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import MOST_EFFECTS, sets_in_place_of, sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
+from hfanalysis.diagnose.naming.straight import all_straightened
 from hfanalysis.diagnose.naming.valleys import among_valleys
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.inference.candidate import Bench, Candidate, by_evidence, more_probable
@@ -89,8 +90,11 @@ def name_effects(
     best = max(c.log_evidence for c in (named, *unknown))
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     sets = by_evidence(each(lambda c: _in_its_valley(c, best, bench), sets))
-    equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     risen = base.log_evidence - told.log_evidence
+    straight = all_straightened(base, [*singles, *sets, *unknown], RIVAL, bench)
+    base = straight[base.key]
+    singles, sets, unknown = (by_evidence(straight[c.key] for c in some) for some in (singles, sets, unknown))
+    equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
 
 

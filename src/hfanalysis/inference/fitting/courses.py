@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.inference.fitting.hypothesis import DEPARTURE, Free, Hypothesis
+from hfanalysis.inference.fitting.hypothesis import OF_COURSE, Free, Hypothesis
 from hfanalysis.inference.fitting.predict import signatures
 from hfanalysis.inference.observations.observed import Observed
 
@@ -46,16 +46,9 @@ def with_courses(hypothesis: Hypothesis, observed: Observed, x: Array) -> tuple[
     count, channels, at = columns.shape[1], [], 0
     for channel in observed.channels:
         own, at = columns[at : at + channel.time.size], at + channel.time.size
-        before = np.zeros((channel.time.size, 0)) if channel.departures is None else channel.departures
-        channels.append(replace(channel, departures=np.column_stack([before, own])))
-    later, wider = (
-        np.concatenate([np.zeros(0) if known is None else known, np.zeros(count)])
-        for known in (observed.later, observed.wider)
-    )
-    free = tuple(Free(f"{DEPARTURE}course {i}", 0.0, 1.0) for i in range(count))
-    return replace(hypothesis, free=(*hypothesis.free, *free)), replace(
-        observed, channels=tuple(channels), later=later, wider=wider
-    )
+        channels.append(replace(channel, courses=own))
+    free = tuple(Free(f"{OF_COURSE}{i}", 0.0, 1.0) for i in range(count))
+    return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=tuple(channels))
 
 
 def _knots(start: float, end: float) -> Array:

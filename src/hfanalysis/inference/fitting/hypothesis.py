@@ -21,6 +21,7 @@ from hfanalysis.engine.effect import Active, Effect
 from hfanalysis.engine.grain import USUAL_N, oxidizer_flux
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.inference.fitting.laws import LAWS, by_laws
 from hfanalysis.inference.splines import Splines
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import STATED
@@ -41,10 +42,10 @@ law of a fuel."""
 
 
 DEPARTURE = "departure: "
-"""How the names of parameters begin that are departures of the table of nitrous oxide, or of a law."""
+"""How the names of parameters begin that are departures from what a hypothesis says."""
 
-OF_LAW = f"{DEPARTURE}law: "
-"""How those of a law begin."""
+OF_TABLE, OF_LAW, OF_COURSE = f"{DEPARTURE}table: ", f"{DEPARTURE}law: ", f"{DEPARTURE}course "
+"""How those of a table, of a law, and of the course of an effect begin."""
 
 
 @dataclass(frozen=True)
@@ -132,12 +133,28 @@ class Block:
 
 
 @dataclass(frozen=True)
+class Departures:
+    """What a run reads more where tables and laws depart, by a standard deviation of each (departures,).
+
+    ``reads``: by channel (points, departures) [SI], on the common grid; ``later`` (departures,) [s]: the end of the
+    liquid; ``wider`` (departures,) [m]: the port at the end of the fuel. ``run``: whether the engine is run by the laws
+    themselves; these are then for tables alone.
+    """
+
+    reads: Mapping[str, Array]
+    later: Array
+    wider: Array
+    run: bool = False
+
+
+@dataclass(frozen=True)
 class Hypothesis:
     """An engine and what may move in it; ``x`` below counts prior standard deviations, so that its prior is N(0, 1)."""
 
     engine: Engine
     free: tuple[Free, ...]
     blocks: tuple[Block, ...] = ()
+    departures: Departures | None = None
 
     @property
     def size(self) -> int:
@@ -158,7 +175,12 @@ class Hypothesis:
     @property
     def of_departures(self) -> list[int]:
         """Where among the parameters the departures of the table of nitrous oxide and of laws are."""
-        return [i for i, f in enumerate(self.free) if f.name.startswith(DEPARTURE)]
+        return [i for i, f in enumerate(self.free) if f.name.startswith((OF_TABLE, OF_LAW))]
+
+    @property
+    def of_courses(self) -> list[int]:
+        """Where among the parameters the courses of effects are."""
+        return [i for i, f in enumerate(self.free) if f.name.startswith(OF_COURSE)]
 
     @property
     def of_laws(self) -> list[int]:
@@ -189,6 +211,28 @@ class Hypothesis:
         of_effects = {n: v for n, v in values.items() if "." in n}
         engine = replace(self.engine, feed=replace(self.engine.feed, **feed), **own)
         return replace(engine, effects=_moved(engine.effects, of_effects))
+
+    @property
+    def runs_laws(self) -> bool:
+        """Whether the engine is run by laws that depart, not what they add taken as linear."""
+        return self.departures is not None and self.departures.run
+
+    def linear(self, x: Array) -> Array:
+        """The departures (departures,) whose additions are linear, in standard deviations; 0 for those of a run."""
+        off = x[self.of_departures]
+        if self.runs_laws:
+            off[-len(LAWS.parameters) :] = 0.0
+        return off
+
+    def as_run(self, x: Array) -> Engine:
+        """The engine that is run at ``x`` (parameters,): :meth:`at`, by its laws if these are run."""
+        return by_laws(self.at(x), x[self.of_laws]) if self.runs_laws else self.at(x)
+
+    @property
+    def of_run(self) -> tuple[str, ...]:
+        """Names of all that a run's slopes are by: :attr:`of_engine`, and the laws if these are run."""
+        laws = (f"{LAWS.name}.{law.name}" for law in LAWS.parameters)
+        return (*self.of_engine, *laws) if self.runs_laws else self.of_engine
 
     def jacobian(self, x: Array) -> Array:
         """Derivatives (parameters, x) of the parameters [SI] with ``x``."""
@@ -247,20 +291,20 @@ class Hypothesis:
     def with_active(self, active: Active, free: tuple[Free, ...]) -> Hypothesis:
         """The same with an effect more, and what may move in it."""
         engine = replace(self.engine, effects=(*self.engine.effects, active))
-        return Hypothesis(engine, (*self.free, *free), self.blocks)
+        return replace(self, engine=engine, free=(*self.free, *free))
 
     def without(self, name: str) -> Hypothesis:
         """The same without an effect."""
         effects = tuple(a for a in self.engine.effects if a.effect.name != name)
         free = tuple(f for f in self.free if f.name.partition(".")[0] != name)
-        return Hypothesis(replace(self.engine, effects=effects), free, self.blocks)
+        return replace(self, engine=replace(self.engine, effects=effects), free=free)
 
     def with_block(self, block: Block, active: Active | None = None) -> Hypothesis:
         """The same with an unknown source more."""
         engine = self.engine
         if active is not None:
             engine = replace(engine, effects=(*engine.effects, active))
-        return Hypothesis(engine, self.free, (*self.blocks, block))
+        return replace(self, engine=engine, blocks=(*self.blocks, block))
 
 
 def mid_flux(engine: Engine) -> float:

@@ -8,8 +8,10 @@ no effect is named, and nothing is called unknown, for what another law of the s
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import exp, log
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.equations import OUTER_RADIUS
 from hfanalysis.engine.sites import (
@@ -32,6 +34,7 @@ from hfanalysis.engine.sites import (
     THRUST_FACTOR,
     term,
 )
+from hfanalysis.engine.unsteady import Engine
 
 USUAL_FLOW = 20e5 * 800.0
 """Pressure times density [Pa kg/m^3] about which what goes with the flow turns. Source: an injector of 20 bar."""
@@ -110,3 +113,9 @@ LAWS = Effect(
     term=_term,
 )  # fmt: skip
 """The ``typical`` size of each is its standard deviation, independent of the others."""
+
+
+def by_laws(engine: Engine, departures: Array) -> Engine:
+    """An engine by laws that depart so far (laws,), in standard deviations."""
+    sizes = {law.name: law.typical * float(x) for law, x in zip(LAWS.parameters, departures, strict=True)}
+    return replace(engine, effects=(*engine.effects, LAWS.at(**sizes)))

@@ -16,7 +16,8 @@ from hfanalysis.engine.sensitivity import Tangents, run_with_tangents, tangents_
 from hfanalysis.engine.tangents import at_times
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.fitting.fade import abrupt, bounded, fade_misfit, fade_slope
-from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.hypothesis import Departures, Hypothesis
+from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.observations.alignment import model_times, share
 from hfanalysis.inference.observations.channel import ObservedChannel
 from hfanalysis.inference.observations.observed import FADE, Observed
@@ -64,7 +65,7 @@ def predict(
     ``only``: slopes with these of its free parameters, which costs the less the fewer they are. Raises ValueError or
     ArithmeticError for an engine that cannot be run.
     """
-    engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
+    engine = with_spare_fuel(hypothesis.as_run(x), observed.fuel_out)
     burnt = burn(engine, observed.longest + AFTER, accuracy, run_on=True, keep_idle=True)
     true = true_readings(observed, burnt)
     there = Prediction(residuals(hypothesis, observed, x, burnt, true), None, burnt, true)
@@ -81,7 +82,7 @@ def with_slopes(
         found = tangents_of(there.burnt, [f.name for f in free])
         scales = np.array([f.slope(float(v)) for f, v in zip(free, x[only], strict=True)])
         return replace(there, slopes=slopes_of(hypothesis, observed, found, there.true) * scales)
-    found = tangents_of(there.burnt, hypothesis.of_engine)
+    found = tangents_of(there.burnt, hypothesis.of_run)
     of_engine = slopes_of(hypothesis, observed, found, there.true)
     return replace(there, slopes=all_slopes(hypothesis, observed, of_engine) @ hypothesis.jacobian(x))
 
@@ -100,31 +101,35 @@ def all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> 
     """Whitened slopes (observations, parameters) with all parameters [1/SI]: the engine's, those of the sensors'
     sources, and those of its table.
 
-    ``of_engine`` (observations, parameters of the engine) [1/SI].
+    ``of_engine`` (observations, parameters of a run) [1/SI].
     """
     names, out = hypothesis.of_engine, np.zeros((of_engine.shape[0], hypothesis.size))
     column = {name: i for i, name in enumerate(hypothesis.names)}
-    out[:, [column[name] for name in names]] = of_engine
+    out[:, [column[name] for name in names]] = of_engine[:, : len(names)]
     for block, place in hypothesis.places():
         if block.sensor is not None:
             out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
-    if places := hypothesis.of_departures:
-        out[:, places] = departure_slopes(observed, hypothesis.engine, len(places))
+    if hypothesis.departures is not None:
+        out[:, hypothesis.of_departures] = _departure_slopes(observed, hypothesis.engine, hypothesis.departures)
+    if hypothesis.runs_laws:
+        out[:, hypothesis.of_laws] = of_engine[:, len(names) :] * [law.typical for law in LAWS.parameters]
+    if places := hypothesis.of_courses:
+        blocks = -observed.whiten(np.concatenate([c.courses for c in observed.channels if c.courses is not None]))
+        out[: blocks.shape[0], places] = blocks
     return out
 
 
-def departure_slopes(observed: Observed, engine: Engine, count: int) -> Array:
-    """Whitened slopes (observations, ``count``) of the residuals with the departures of the table of nitrous oxide and
+def _departure_slopes(observed: Observed, engine: Engine, departures: Departures) -> Array:
+    """Whitened slopes (observations, departures) of the residuals with the departures of the table of nitrous oxide and
     of laws, in their standard deviations; ``engine``: whose grain it is."""
-    blocks = [np.zeros((c.time.size, count)) if c.departures is None else c.departures for c in observed.channels]
-    scalars = np.zeros((len(observed.events) + len(observed.stated), count))
+    blocks = np.concatenate([c.averaged(departures.reads[c.name]) for c in observed.channels])
+    scalars = np.zeros((len(observed.events) + len(observed.stated), departures.later.size))
     for row, (name, (at, _)) in enumerate(observed.events.items()):
-        added = observed.later if name == "t_v" else observed.wider
-        if added is not None:
-            scalars[row] = -added / (
-                observed.spread(name) * (1.0 if name == "t_v" else _typical_regression(engine, at))
-            )
-    return np.concatenate([-observed.whiten(np.concatenate(blocks)), scalars])
+        if name == "t_v":
+            scalars[row] = -departures.later / observed.spread(name)
+        else:
+            scalars[row] = -departures.wider / (observed.spread(name) * _typical_regression(engine, at))
+    return np.concatenate([-observed.whiten(blocks), scalars])
 
 
 def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
@@ -160,13 +165,13 @@ def residuals(
         deviation = observed.spread(name)
         if name == "t_v":
             gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
-            if observed.later is not None and (places := hypothesis.of_departures):
-                gone += float(observed.later @ x[places])
+            if hypothesis.departures is not None:
+                gone += float(hypothesis.departures.later @ hypothesis.linear(x))
             scalars.append((at - gone) / deviation)
         else:
             web = hypothesis.engine.outer_radius - port_radius(burnt, at)
-            if observed.wider is not None and (places := hypothesis.of_departures):
-                web -= float(observed.wider @ x[places])
+            if hypothesis.departures is not None:
+                web -= float(hypothesis.departures.wider @ hypothesis.linear(x))
             scalars.append(web / (deviation * _typical_regression(hypothesis.engine, at)))
     for name, (value, deviation) in observed.stated.items():
         if name == FADE:
@@ -211,11 +216,13 @@ def _with_its_zero(observed: Observed, true: Mapping[str, Array], read: dict[str
 
 
 def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: ObservedChannel) -> Array:
-    """What unknown sources and another table of nitrous oxide add to a channel's blocks (blocks,) [SI], at ``x``
+    """What unknown sources, and departures of tables and laws, add to a channel's blocks (blocks,) [SI], at ``x``
     (parameters,)."""
     own = hypothesis.offset(channel.name, x, channel.time)
-    if channel.departures is not None and (places := hypothesis.of_departures):
-        own = own + channel.departures @ x[places]
+    if hypothesis.departures is not None:
+        own = own + channel.averaged(hypothesis.departures.reads[channel.name] @ hypothesis.linear(x))
+    if channel.courses is not None and (places := hypothesis.of_courses):
+        own = own + channel.courses @ x[places]
     if channel.name != ALIKE[1] or observed.line_zero is None:
         return own
     return own + hypothesis.offset(ALIKE[0], x, np.array([observed.line_zero]))
@@ -265,7 +272,7 @@ def slopes_of(
 def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
     """What each effect's strengths add to the blocks of all channels [SI], linear: (blocks, strengths); ``x``
     (parameters,)."""
-    engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
+    engine = with_spare_fuel(hypothesis.as_run(x), observed.fuel_out)
     names = [
         f"{a.effect.name}.{p.name}" for a in engine.effects for p in a.effect.parameters[: a.effect.strengths]
         if f"{a.effect.name}.{p.name}" in hypothesis.of_engine

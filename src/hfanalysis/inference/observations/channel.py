@@ -27,8 +27,8 @@ class ObservedChannel:
     ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
     noise, whose size a quiet time of seconds does not tell exactly, but to the standard deviation ``unsure`` of the log
     of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
-    not the channel's own. ``departures`` (blocks, departures): what a model would read more if the table of nitrous
-    oxide or a law departed by a standard deviation; None where that was not asked. ``moved`` (blocks, errors) [SI]:
+    not the channel's own. ``courses`` (blocks, courses): what a model would read more if the course of an
+    effect were another one by a standard deviation; None where that was not asked. ``moved`` (blocks, errors) [SI]:
     what it differs by if an instant on which the model is laid was seen a standard deviation late, or more flows
     without fire; it is part of the covariance.
 
@@ -48,16 +48,16 @@ class ObservedChannel:
     slow: Array | None = None
     span: float | None = None
     unsure: float = 1.0
-    departures: Array | None = None
+    courses: Array | None = None
     moved: Array | None = None
 
     def only(self, rows: Integers) -> ObservedChannel:
         """The same with some of its blocks; ``rows`` (kept,): their numbers."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
-        departures, moved = (None if x is None else x[rows] for x in (self.departures, self.moved))
+        courses, moved = (None if x is None else x[rows] for x in (self.courses, self.moved))
         covariance = self.covariance[np.ix_(rows, rows)]
-        return replace(self, **picked, covariance=covariance, slow=slow, departures=departures, moved=moved)
+        return replace(self, **picked, covariance=covariance, slow=slow, courses=courses, moved=moved)
 
     def with_white_noise(self) -> ObservedChannel:
         """The same with independent noise of the same size, beside offset and gain."""

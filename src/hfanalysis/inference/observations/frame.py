@@ -159,11 +159,19 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
     first = max(over + SETTLING, last - LONGEST_REST)
     if last - first < SHORTEST_REST:
         return None
-    half = 0.5 * (first + last)
     noise = Noise.of(signal, signal.between(-LONGEST_RECORD, -0.1))
-    fall = signal.mean(first, half) - signal.mean(half, last)
-    if not abs(fall) <= 3.0 * noise.difference_std((first, half), (half, last)):
+
+    def alike(one: tuple[float, float], two: tuple[float, float]) -> bool:
+        return abs(signal.mean(*one) - signal.mean(*two)) <= 3.0 * noise.difference_std(one, two)
+
+    half = 0.5 * (first + last)
+    if not alike((first, half), (half, last)):
         return None
+    # halves of seconds hide what still falls in the first tenths of one
+    while not alike((first, begins := first + (last - first) / REST_BLOCKS), (begins, last)):
+        first = begins
+        if last - first < SHORTEST_REST:
+            return None
     return first, last
 
 

@@ -40,9 +40,7 @@ class Observed:
     ``alike``: the same of ALIKE, which come one after the other; ``line_zero`` [s]: when the zero of the second was
     taken of the first. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
     thrust. ``unknowns``: those that the samples show without a model. ``abrupt``: the seconds that FADE would be if the
-    fire were out at once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every
-    departure of a table or law, where it was asked (as the channels' ``departures``); ``wider`` [m]: by how much its
-    port is wider at the end of the fuel.
+    fire were out at once, where a model was asked.
 
     ``grid``: (points,); ``ambient``: pressure [Pa].
     """
@@ -64,8 +62,6 @@ class Observed:
     flame_shown: float | None = None
     unknowns: tuple[Unknown, ...] = ()
     abrupt: float | None = None
-    later: Array | None = None
-    wider: Array | None = None
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
         """The same with another model-form error: parts [-] of the range of the tank's channels, and of chamber and
