@@ -12,11 +12,11 @@ from tests.engine.stand import engine_on_stand
 from tests.inference import made
 
 from hfanalysis.engine.effect import Parameter
-from hfanalysis.inference.fitting.departures import with_departures
-from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.departures import by_its_laws, with_departures
+from hfanalysis.inference.fitting.fit import Fit, fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
-from hfanalysis.inference.fitting.laws import LAWS
-from hfanalysis.inference.fitting.predict import predict
+from hfanalysis.inference.fitting.laws import LAWS, by_laws
+from hfanalysis.inference.fitting.predict import FINE, added, predict
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, Departure, departed
 from hfanalysis.thermo.saturation import Saturation
@@ -38,7 +38,8 @@ def table_of(saturation: Saturation) -> Saturation:
 
 @cache
 def ready() -> tuple[Hypothesis, Observed]:
-    return with_departures(made.hypothesis(), made.observed())
+    observed = made.observed()
+    return with_departures(made.hypothesis(), observed), observed
 
 
 @cache
@@ -54,8 +55,11 @@ def test_the_departures_are_constants_of_their_own() -> None:
     assert [hypothesis.names[i] for i in hypothesis.of_departures] == [f"departure: {name}" for name in names]
     assert hypothesis.nuisances == hypothesis.size == made.hypothesis().size + len(names)
     assert not {hypothesis.names[i] for i in hypothesis.of_departures} & set(hypothesis.of_engine)
-    assert all(c.departures is not None for c in observed.channels)
-    assert {c.departures.shape[1] for c in observed.channels if c.departures is not None} == {len(names)}
+    assert hypothesis.departures is not None
+    reads = hypothesis.departures.reads
+    assert {name: read.shape for name, read in reads.items()} == {
+        c.name: (observed.grid.size, len(names)) for c in observed.channels
+    }
 
 
 @pytest.mark.parametrize("which", range(len(DEPARTURES)), ids=lambda i: DEPARTURES[i].name)
@@ -114,8 +118,7 @@ def test_another_law_is_no_effect_where_laws_may_depart() -> None:
     laws = LAWS.at(loss=-0.2, vapor=0.06, mixture=0.04)
     engine = engine_on_stand()
     fixed, observed = made.hypothesis(), made.observed(engine=replace(engine, effects=(laws,)))
-    free, told = with_departures(fixed, observed)
-    without, found = fit(fixed, observed), fit(free, told)
+    without, found = fit(fixed, observed), fit(with_departures(fixed, observed), observed)
     assert found.log_evidence > without.log_evidence + 10.0
     assert float(found.residual @ found.residual) / found.residual.size < 1.2
 
@@ -139,14 +142,19 @@ def test_slopes_are_those_of_the_residual() -> None:
 def test_blocks_that_are_left_out_take_their_part_along() -> None:
     hypothesis, observed = ready()
     half = observed.without({c.name: c.time > 2.0 for c in observed.channels})
-    assert all(c.departures is not None and c.departures.shape[0] == c.time.size for c in half.channels)
-    assert predict(hypothesis, half, np.zeros(hypothesis.size), tangents=True).slopes is not None
+    x = np.zeros(hypothesis.size)
+    x[hypothesis.of_departures] = 1.0
+    for channel, whole in zip(half.channels, observed.channels, strict=True):
+        kept = np.isin(whole.time, channel.time)
+        assert 0 < kept.sum() < kept.size
+        one, other = added(hypothesis, half, x, channel), added(hypothesis, observed, x, whole)[kept]
+        assert one == pytest.approx(other, abs=1e-9 * float(np.abs(other).max()))
 
 
 def test_another_table_is_no_effect_where_tables_may_depart_and_is_one_where_not() -> None:
     fixed, observed = made.hypothesis(), elsewhere()
-    free, told = with_departures(fixed, observed)
-    without, found = fit(fixed, observed), fit(free, told)
+    free = with_departures(fixed, observed)
+    without, found = fit(fixed, observed), fit(free, observed)
     assert found.log_evidence > without.log_evidence + 10.0 - COST * len(LAWS.parameters)
     assert float(found.residual @ found.residual) / found.residual.size < 1.1
     departures = found.x[free.of_departures]
@@ -164,6 +172,54 @@ def test_what_cannot_be_run_is_left_as_it_is() -> None:
     hypothesis, observed = made.hypothesis(), made.observed()
     feed = replace(hypothesis.engine.feed, volume=1e-3)  # the load does not fit in
     broken = replace(hypothesis, engine=replace(hypothesis.engine, feed=feed))
-    same, observations = with_departures(broken, observed)
-    assert same is broken
-    assert observations is observed
+    assert with_departures(broken, observed) is broken
+
+
+@cache
+def far() -> tuple[Fit, Observed]:
+    """A fit by linear laws to a test of an engine whose laws depart far."""
+    laws = LAWS.at(**{law.name: 1.5 * law.typical for law in LAWS.parameters})
+    observed = made.observed(engine=replace(engine_on_stand(), effects=(laws,)))
+    return fit(with_departures(made.hypothesis(), observed), observed), observed
+
+
+def test_laws_that_depart_far_are_run() -> None:
+    linear, observed = far()
+    hypothesis = by_its_laws(linear, observed)
+    assert hypothesis is not None
+    assert hypothesis.runs_laws
+    assert hypothesis.names == linear.hypothesis.names
+    assert by_its_laws(fit(hypothesis, observed, linear.x), observed) is None
+
+
+def test_a_run_by_laws_is_that_of_an_engine_that_has_them() -> None:
+    linear, observed = far()
+    hypothesis = by_its_laws(linear, observed)
+    assert hypothesis is not None
+    x = linear.x.copy()
+    x[[i for i in hypothesis.of_departures if i not in hypothesis.of_laws]] = 0.0
+    engine = by_laws(replace(hypothesis, departures=None).at(x), x[hypothesis.of_laws])
+    fixed = replace(made.hypothesis(), engine=engine, free=())
+    own, other = (predict(h, observed, at, tangents=False).residual for h, at in ((hypothesis, x), (fixed, x[:0])))
+    assert own == pytest.approx(other, abs=1e-9)
+
+
+def test_slopes_with_laws_that_are_run_are_those_of_the_residual() -> None:
+    linear, observed = far()
+    hypothesis = by_its_laws(linear, observed)
+    assert hypothesis is not None
+    here = predict(hypothesis, observed, linear.x, tangents=True, accuracy=FINE)
+    assert here.slopes is not None
+    for place in hypothesis.of_laws:
+        moved = linear.x.copy()
+        moved[place] += 1e-2
+        there = predict(hypothesis, observed, moved, tangents=False, accuracy=FINE)
+        found = (there.residual - here.residual) / 1e-2
+        assert found == pytest.approx(here.slopes[:, place], abs=0.02 * float(np.abs(found).max()) + 1e-3)
+
+
+def test_laws_that_hardly_depart_stay_linear() -> None:
+    linear, observed = far()
+    hardly = linear.x.copy()
+    hardly[linear.hypothesis.of_laws] *= 0.05
+    assert by_its_laws(replace(linear, x=hardly), observed) is None

@@ -139,6 +139,21 @@ def test_a_log_that_ends_with_the_burn_has_no_rest_after_it() -> None:
     assert channel(test, "p_tank").resting.sum() == 2
 
 
+def test_the_rest_after_the_flow_begins_where_the_chamber_stands_still() -> None:
+    """What burns on fades: over the first of four blocks it is four deviations of noise, over the first half two."""
+    time, end = logged.clean()[0], changes()[1]
+    glow = np.where(time > end, 5e4 * np.exp(-np.maximum(time - end, 0.0) / 0.25), 0.0)
+    still, glowing = (
+        channel(logged.reduced(logged.log(plus=plus)), "p_chamber") for plus in (None, {"p_chamber": glow})
+    )
+    first, later = (c.time[c.resting & (c.time > 0.0)] for c in (still, glowing))
+    assert first.size == later.size == REST_BLOCKS
+    assert later[0] > first[0] + 0.5 * (first[1] - first[0])
+    assert later[1] - later[0] < 0.9 * (first[1] - first[0])
+    rest = channel(logged.reduced(logged.log(plus={"p_chamber": glow})), "p_chamber")
+    assert np.abs(rest.value - logged.reduced().ambient)[rest.resting & (rest.time > 0.0)].max() < 1.5e3
+
+
 @pytest.mark.parametrize(("quiet", "blocks"), [(0.02, 0), (0.3, 1), (0.65, 1), (1.15, 2)])
 def test_a_log_that_begins_shortly_before_the_opening_has_as_much_rest(quiet: float, blocks: int) -> None:
     log = TestLog({n: _begun(c, logged.OPENING - quiet) for n, c in logged.log().channels.items()})

@@ -54,11 +54,13 @@ def by_its_laws(found: Fit, observed: Observed) -> Hypothesis | None:
     if known is None or known.run:
         return None
     try:
-        off = (
-            predict(_run(hypothesis, known), observed, found.x, tangents=False, accuracy=FINE).residual - found.residual
+        linear, run = (
+            predict(one, observed, found.x, tangents=False, accuracy=FINE).residual
+            for one in (hypothesis, _run(hypothesis, known))
         )
     except (ValueError, ArithmeticError):
         return None
+    off = run - linear
     if float(off @ off) < BENT or (made := _departures(hypothesis, observed, found.x)) is None:
         return None
     return _run(hypothesis, made)
