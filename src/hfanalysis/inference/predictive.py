@@ -1,7 +1,8 @@
 """What a fit says of data that it was not fitted to, as a log probability.
 
 Interleaved stretches are left out in turn. The noise of a channel is correlated, so what counts is the density of the
-stretches that were left out, given the others: that of all less that of the rest.
+stretches that were left out, given the others: that of all less that of the rest, each over all constants that the rest
+leaves possible, as its slopes tell.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted
-from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.fit import Fit, usable
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.gap import FOLDS, stretches
@@ -25,8 +26,8 @@ cannot be foretold from the others, and that says nothing against it."""
 
 @dataclass(frozen=True)
 class Foretold:
-    """Log of the probability density of what was held out given the rest [natural log of SI]: by fits to the
-    ``rest``, and by the fit to ``all`` of it."""
+    """Log of the probability density of what was held out given the rest [natural log of SI]: by what the ``rest``
+    leaves possible, and by the fit to ``all`` of it."""
 
     rest: float
     all: float
@@ -52,14 +53,30 @@ def _of_fold(found: Candidate, observed: Observed, fold: int) -> Foretold | None
     if again is None or not _foretold(found.fit, again):
         return None
     try:
-        there = predict(made, observed, again.x, tangents=False)
+        there = predict(made, observed, again.x, tangents=True)
         as_all = predict(made, rest, x, tangents=False)
     except (ValueError, ArithmeticError):
         return None
+    if there.slopes is None or not usable(there):
+        return None
     return Foretold(
-        _log_density(there.residual, observed) - _log_density(again.residual, rest),
+        _of_all_constants(there.residual, there.slopes, again.x, observed)
+        - _of_all_constants(again.residual, again.slopes, again.x, rest),
         _log_density(found.fit.residual, observed) - _log_density(as_all.residual, rest),
     )
+
+
+def _of_all_constants(residual: Array, slopes: Array, x: Array, observed: Observed) -> float:
+    """Log of the probability density of data [natural log of SI], over all constants that they leave possible: a
+    ``residual`` (observations,) and its ``slopes`` (observations, parameters) at ``x`` (parameters,).
+
+    What the rest leaves open of a constant, of which a stretch that is held out tells most, is no failure to foretell
+    that stretch.
+    """
+    curvature = slopes.T @ slopes + np.eye(x.size)
+    step = -np.linalg.solve(curvature, slopes.T @ residual + x)
+    left = _log_density(residual + slopes @ step, observed) - 0.5 * float((x + step) @ (x + step))
+    return left - 0.5 * float(np.linalg.slogdet(curvature)[1])
 
 
 def _log_density(residual: Array, observed: Observed) -> float:
