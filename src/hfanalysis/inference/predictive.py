@@ -60,13 +60,13 @@ def _of_fold(found: Candidate, observed: Observed, fold: int) -> Foretold | None
     if there.slopes is None or not usable(there):
         return None
     return Foretold(
-        _of_all_constants(there.residual, there.slopes, again.x, observed)
-        - _of_all_constants(again.residual, again.slopes, again.x, rest),
+        over_constants(there.residual, there.slopes, again.x, observed)
+        - over_constants(again.residual, again.slopes, again.x, rest),
         _log_density(found.fit.residual, observed) - _log_density(as_all.residual, rest),
     )
 
 
-def _of_all_constants(residual: Array, slopes: Array, x: Array, observed: Observed) -> float:
+def over_constants(residual: Array, slopes: Array, x: Array, observed: Observed) -> float:
     """Log of the probability density of data [natural log of SI], over all constants that they leave possible: a
     ``residual`` (observations,) and its ``slopes`` (observations, parameters) at ``x`` (parameters,).
 
