@@ -26,8 +26,8 @@ is missing, and a run with one deviation does not tell what ten would do."""
 
 BENT = 1.0
 """Square of what departures add to the whitened residual beside what a run by these laws does, from which on the engine
-is run by them [-]. Source: half of it is log probability. Evidence: in a test of the worlds that hides nothing (9 kN,
-quiet sensors) it was 45, and a regression by pressure was claimed for it."""
+is run by them [-]. Source: half of it is log probability. Evidence: in SB03 (docs/worlds.md), which hides nothing, an
+unknown source had been stated at 0.99 for it."""
 
 
 def with_departures(hypothesis: Hypothesis, observed: Observed, start: Array | None = None) -> Hypothesis:
