@@ -43,6 +43,10 @@ SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
 REST_BLOCKS = 4
 """Blocks that such a rest is cut into."""
 
+SETTLED, LATER = 2.0, 0.1
+"""Standard deviations by which the first of these blocks may differ from the rest, and by how much later [s] it is
+begun where it does. Source: by chance one rest in twenty begins later than it might, and loses little by it."""
+
 BEFORE_BLOCKS, BEFORE_BLOCK, BEFORE_END = 8, 0.5, 0.1
 """The rest before the opening: at most so many blocks of such a length [s], the last of which ends so long before it
 [s]."""
@@ -161,18 +165,19 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
         return None
     noise = Noise.of(signal, signal.between(-LONGEST_RECORD, -0.1))
 
-    def alike(one: tuple[float, float], two: tuple[float, float]) -> bool:
-        return abs(signal.mean(*one) - signal.mean(*two)) <= 3.0 * noise.difference_std(one, two)
+    def alike(one: tuple[float, float], two: tuple[float, float], most: float) -> bool:
+        return abs(signal.mean(*one) - signal.mean(*two)) <= most * noise.difference_std(one, two)
 
     half = 0.5 * (first + last)
-    if not alike((first, half), (half, last)):
+    if not alike((first, half), (half, last), 3.0):
         return None
     # halves of seconds hide what still falls in the first tenths of one
-    while not alike((first, begins := first + (last - first) / REST_BLOCKS), (begins, last)):
-        first = begins
-        if last - first < SHORTEST_REST:
-            return None
-    return first, last
+    while last - first >= SHORTEST_REST:
+        second = first + (last - first) / REST_BLOCKS
+        if alike((first, second), (second, last), SETTLED):
+            return first, last
+        first += LATER
+    return None
 
 
 def _tank_end(segments: Segments, definition: TestDefinition, end: float) -> float:
