@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_beside, unknown_instead
@@ -91,9 +93,11 @@ def name_effects(
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     sets = by_evidence(each(lambda c: _in_its_valley(c, best, bench), sets))
     risen = base.log_evidence - told.log_evidence
-    straight = all_straightened(base, [*singles, *sets, *unknown], RIVAL, bench)
-    base = straight[base.key]
-    singles, sets, unknown = (by_evidence(straight[c.key] for c in some) for some in (singles, sets, unknown))
+    base, *straight = all_straightened([base, *singles, *sets, *unknown], RIVAL, bench)
+    ends = np.cumsum([len(singles), len(sets)])
+    singles, sets, unknown = (
+        by_evidence(some) for some in (straight[: ends[0]], straight[ends[0] : ends[1]], straight[ends[1] :])
+    )
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
 

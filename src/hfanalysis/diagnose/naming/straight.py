@@ -10,16 +10,14 @@ from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.threads import each
 
 
-def all_straightened(
-    base: Candidate, others: list[Candidate], near: float, bench: Bench
-) -> dict[tuple[str, ...], Candidate]:
-    """The base model, and those of the ``others`` that come to lie within ``near`` [natural log] of the most probable,
-    straightened; by their keys. The rest are as they were."""
-    now = {c.key: c for c in (*others, base)}
-    done, todo = set[tuple[str, ...]](), [base.key]
+def all_straightened(candidates: list[Candidate], near: float, bench: Bench) -> list[Candidate]:
+    """The candidates, of which the base model is the first: it, and those that come to lie within ``near`` [natural
+    log] of the most probable, straightened; the rest as they were."""
+    now, done, todo = list(candidates), set[int](), [0]
     while todo:
-        now |= zip(todo, each(bench.straightened, [now[key] for key in todo]), strict=True)
+        for place, one in zip(todo, each(bench.straightened, [now[place] for place in todo]), strict=True):
+            now[place] = one
         done |= set(todo)
-        best = max(c.log_evidence for c in now.values())
-        todo = [key for key, c in now.items() if c.log_evidence > best - near and key not in done]
+        best = max(c.log_evidence for c in now)
+        todo = [place for place, c in enumerate(now) if c.log_evidence > best - near and place not in done]
     return now
