@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.inference.fitting.departures import by_its_laws
+from hfanalysis.inference.fitting.departures import with_its_laws
 from hfanalysis.inference.fitting.fit import ENDED, Fit, brought_to_end, fit, fit_on, promised
 from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
@@ -200,11 +200,11 @@ class Bench:
         except (ValueError, ArithmeticError):
             return near
 
-    def straightened(self, found: Candidate) -> Candidate:
+    def by_its_laws(self, found: Candidate) -> Candidate:
         """A candidate whose numbers are told; where its laws depart so far that what they add is not linear, fitted by
         an engine of these laws, at the form that suits it then."""
         observed = self.at(found.form)
-        made = by_its_laws(found.fit, observed)
+        made = with_its_laws(found.fit, observed)
         again = None if made is None else attempted(made, observed, found.fit.x, LONGEST)
         return found if again is None else self.told(self.judged(_with_fit(found, again)))
 

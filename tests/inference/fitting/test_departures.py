@@ -12,10 +12,10 @@ from tests.engine.stand import engine_on_stand
 from tests.inference import made
 
 from hfanalysis.engine.effect import Parameter
-from hfanalysis.inference.fitting.departures import by_its_laws, with_departures
+from hfanalysis.inference.fitting.departures import with_departures, with_its_laws
 from hfanalysis.inference.fitting.fit import Fit, fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
-from hfanalysis.inference.fitting.laws import LAWS, by_laws
+from hfanalysis.inference.fitting.laws import LAWS, engine_by_laws
 from hfanalysis.inference.fitting.predict import FINE, added, predict
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, Departure, departed
@@ -185,20 +185,20 @@ def far() -> tuple[Fit, Observed]:
 
 def test_laws_that_depart_far_are_run() -> None:
     linear, observed = far()
-    hypothesis = by_its_laws(linear, observed)
+    hypothesis = with_its_laws(linear, observed)
     assert hypothesis is not None
     assert hypothesis.runs_laws
     assert hypothesis.names == linear.hypothesis.names
-    assert by_its_laws(fit(hypothesis, observed, linear.x), observed) is None
+    assert with_its_laws(fit(hypothesis, observed, linear.x), observed) is None
 
 
 def test_a_run_by_laws_is_that_of_an_engine_that_has_them() -> None:
     linear, observed = far()
-    hypothesis = by_its_laws(linear, observed)
+    hypothesis = with_its_laws(linear, observed)
     assert hypothesis is not None
     x = linear.x.copy()
     x[[i for i in hypothesis.of_departures if i not in hypothesis.of_laws]] = 0.0
-    engine = by_laws(replace(hypothesis, departures=None).at(x), x[hypothesis.of_laws])
+    engine = engine_by_laws(replace(hypothesis, departures=None).at(x), x[hypothesis.of_laws])
     fixed = replace(made.hypothesis(), engine=engine, free=())
     own, other = (predict(h, observed, at, tangents=False).residual for h, at in ((hypothesis, x), (fixed, x[:0])))
     assert own == pytest.approx(other, abs=1e-9)
@@ -206,7 +206,7 @@ def test_a_run_by_laws_is_that_of_an_engine_that_has_them() -> None:
 
 def test_slopes_with_laws_that_are_run_are_those_of_the_residual() -> None:
     linear, observed = far()
-    hypothesis = by_its_laws(linear, observed)
+    hypothesis = with_its_laws(linear, observed)
     assert hypothesis is not None
     here = predict(hypothesis, observed, linear.x, tangents=True, accuracy=FINE)
     assert here.slopes is not None
@@ -222,4 +222,4 @@ def test_laws_that_hardly_depart_stay_linear() -> None:
     linear, observed = far()
     hardly = linear.x.copy()
     hardly[linear.hypothesis.of_laws] *= 0.05
-    assert by_its_laws(replace(linear, x=hardly), observed) is None
+    assert with_its_laws(replace(linear, x=hardly), observed) is None

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-import numpy as np
+from itertools import islice
 
 from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_beside, unknown_instead
+from hfanalysis.diagnose.naming.own_laws import by_their_laws
 from hfanalysis.diagnose.naming.polish import ROUNDS, polished
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import MOST_EFFECTS, sets_in_place_of, sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
-from hfanalysis.diagnose.naming.straight import all_straightened
 from hfanalysis.diagnose.naming.valleys import among_valleys
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.inference.candidate import Bench, Candidate, by_evidence, more_probable
@@ -93,11 +92,9 @@ def name_effects(
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     sets = by_evidence(each(lambda c: _in_its_valley(c, best, bench), sets))
     risen = base.log_evidence - told.log_evidence
-    base, *straight = all_straightened([base, *singles, *sets, *unknown], RIVAL, bench)
-    ends = np.cumsum([len(singles), len(sets)])
-    singles, sets, unknown = (
-        by_evidence(some) for some in (straight[: ends[0]], straight[ends[0] : ends[1]], straight[ends[1] :])
-    )
+    base, *rest = by_their_laws([base, *singles, *sets, *unknown], RIVAL, bench)
+    left = iter(rest)
+    singles, sets, unknown = (by_evidence(islice(left, len(some))) for some in (singles, sets, unknown))
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
 

@@ -15,7 +15,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import OF_LAW, OF_TABLE, Departures, Free, Hypothesis
-from hfanalysis.inference.fitting.laws import LAWS, by_laws
+from hfanalysis.inference.fitting.laws import LAWS, engine_by_laws
 from hfanalysis.inference.fitting.predict import FINE, port_radius, predict, readings
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, departed
@@ -47,7 +47,7 @@ def with_departures(hypothesis: Hypothesis, observed: Observed, start: Array | N
     return replace(hypothesis, free=(*hypothesis.free, *free), departures=found)
 
 
-def by_its_laws(found: Fit, observed: Observed) -> Hypothesis | None:
+def with_its_laws(found: Fit, observed: Observed) -> Hypothesis | None:
     """The hypothesis of a fit with an engine that is run by the laws themselves, and what tables add made anew; None
     where what laws add is as linear as was taken, or an engine of these laws cannot be run."""
     hypothesis, known = found.hypothesis, found.hypothesis.departures
@@ -74,7 +74,7 @@ def _departures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Departu
     """What departures add at ``x`` (parameters,), in standard deviations; None where that cannot be run."""
     engine, bare = hypothesis.engine, replace(hypothesis, departures=None)
     tables = [replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES]
-    laws = [by_laws(engine, one) for one in np.eye(len(LAWS.parameters))]
+    laws = [engine_by_laws(engine, one) for one in np.eye(len(LAWS.parameters))]
     try:
         here, *others = (
             predict(replace(bare, engine=one), observed, x, tangents=False).burnt for one in (engine, *tables, *laws)

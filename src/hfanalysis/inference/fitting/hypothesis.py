@@ -21,7 +21,7 @@ from hfanalysis.engine.effect import Active, Effect
 from hfanalysis.engine.grain import USUAL_N, oxidizer_flux
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
-from hfanalysis.inference.fitting.laws import LAWS, by_laws
+from hfanalysis.inference.fitting.laws import LAWS, engine_by_laws
 from hfanalysis.inference.splines import Splines
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import STATED
@@ -226,7 +226,7 @@ class Hypothesis:
 
     def as_run(self, x: Array) -> Engine:
         """The engine that is run at ``x`` (parameters,): :meth:`at`, by its laws if these are run."""
-        return by_laws(self.at(x), x[self.of_laws]) if self.runs_laws else self.at(x)
+        return engine_by_laws(self.at(x), x[self.of_laws]) if self.runs_laws else self.at(x)
 
     @property
     def of_run(self) -> tuple[str, ...]:

@@ -115,7 +115,7 @@ LAWS = Effect(
 """The ``typical`` size of each is its standard deviation, independent of the others."""
 
 
-def by_laws(engine: Engine, departures: Array) -> Engine:
+def engine_by_laws(engine: Engine, departures: Array) -> Engine:
     """An engine by laws that depart so far (laws,), in standard deviations."""
     sizes = {law.name: law.typical * float(x) for law, x in zip(LAWS.parameters, departures, strict=True)}
     return replace(engine, effects=(*engine.effects, LAWS.at(**sizes)))

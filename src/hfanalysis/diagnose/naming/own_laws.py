@@ -10,12 +10,12 @@ from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.threads import each
 
 
-def all_straightened(candidates: list[Candidate], near: float, bench: Bench) -> list[Candidate]:
+def by_their_laws(candidates: list[Candidate], near: float, bench: Bench) -> list[Candidate]:
     """The candidates, of which the base model is the first: it, and those that come to lie within ``near`` [natural
-    log] of the most probable, straightened; the rest as they were."""
+    log] of the most probable, by their laws; the rest as they were."""
     now, done, todo = list(candidates), set[int](), [0]
     while todo:
-        for place, one in zip(todo, each(bench.straightened, [now[place] for place in todo]), strict=True):
+        for place, one in zip(todo, each(bench.by_its_laws, [now[place] for place in todo]), strict=True):
             now[place] = one
         done |= set(todo)
         best = max(c.log_evidence for c in now)
