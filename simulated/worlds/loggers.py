@@ -20,8 +20,9 @@ class Logger:
     """``rate`` [1/s], ``rest`` before the opening [s], white and slow noise over the usual [-], ``jitter`` of samples
     that is written down and that is not [s], and ``bits`` of the converter (0: as fine as it is printed).
 
-    ``hum``: mains noise over the white one [-], at 50 Hz, folded down where the rate is slow; ``corner`` [Hz] of a
-    filter of the first order before the converter (0: none); ``lacks``: channels that the stand does not have."""
+    ``hum``: mains noise over the white one [-], at 50 Hz or nearly, folded down where the rate is slow; ``corner``
+    [Hz] of a filter of the first order before the converter (0: none); ``lacks``: channels that the stand does not
+    have."""
 
     rate: float
     rest: float
@@ -42,8 +43,9 @@ QUICK = (
 )
 """The loggers of the first sets."""
 
-MAINS = 50.0
-"""[Hz]."""
+MAINS, GRID = 50.0, 0.05
+"""[Hz]; and by how much a grid is off at most, as usual: at 50 Hz sharp a logger of 25 Hz would read the same phase
+each time, which is no noise, but a sensor that is off."""
 
 LOGGERS = {
     "50 Hz, jitter, 12 bit": Logger(50.0, 20.0, jitter=(2e-3, 1.5e-3), bits=12),
@@ -112,12 +114,13 @@ def written(
     ideal[:, s.P_CHAMBER] += common
     ideal[:, s.THRUST] += with_.oscillation.coupling * np.pi * stand.throat_radius**2 * common
     values = np.empty_like(ideal)
+    mains = MAINS + rng.uniform(-GRID, GRID) if logger.hum else MAINS
     for i, channel in enumerate(s.CHANNELS):
         unit = se.UNITS[channel]
         x = ideal[:, i] / se.SIZE[unit] * (1.0 + with_.gain[i]) + with_.zero[i] + np.interp(at, grid, slow[:, i])
         x += rng.normal(0.0, with_.white[i], count)
         if logger.hum:
-            x += logger.hum * with_.white[i] * np.sin(2.0 * np.pi * (MAINS * at + rng.uniform()))
+            x += logger.hum * with_.white[i] * np.sin(2.0 * np.pi * (mains * at + rng.uniform()))
         step = SCALE[unit] / 2**logger.bits
         values[:, i] = np.round(x / step) * step if logger.bits else x
     values[:, [s.CHANNELS.index(name) for name in logger.lacks]] = np.nan

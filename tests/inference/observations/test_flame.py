@@ -105,7 +105,15 @@ def test_a_fade_that_the_log_does_not_show_to_its_end_leaves_a_flame_up_to_where
     assert flame_out(seen) is None
     shown = shown_to_burn(seen, stand.ambient, None)
     assert shown is not None
-    assert -0.3 < shown - true.t_fuel_out < 0.2
+    assert -0.3 < shown - true.t_fuel_out < 0.05
+
+
+@pytest.mark.parametrize("gauge", [True, False])
+def test_what_burns_on_for_long_is_no_flame_that_is_shown(gauge: bool) -> None:
+    stand, true = run("together", 0.01, 0.4)
+    shown = shown_to_burn(over_flow(stand, true, end=true.t_fuel_out + 0.8, run=gauge), stand.ambient, None)
+    assert shown is not None
+    assert shown - true.t_fuel_out < 0.05
 
 
 @pytest.mark.parametrize("gauge", [True, False])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from hfanalysis.inference.fitting.hypothesis import Block, Hypothesis
 from hfanalysis.inference.fitting.predict import predict, readings
 from hfanalysis.inference.observations.channel import FORM_ERROR
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.observations.purge_line import SETTLED, purge_line
+from hfanalysis.inference.observations.purge_line import SETTLED, VALVE, purge_line
 from hfanalysis.inference.splines import Splines
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.accuracy import SPAN_SHARE
@@ -36,11 +37,11 @@ def log(line: Array, seed: int | None = 3) -> TestLog:
     return TestLog({**made.channels, "p_purge": channel("p_purge", time + logged.OPENING, line + noise, ACCURACY)})
 
 
-def line_that_follows(share: float = 1.0) -> Array:
-    """At its pressure until the tank is CRACKING below it, then falling with the tank by a share of its fall."""
+def line_that_follows(share: float = 1.0, cracking: float = CRACKING) -> Array:
+    """At its pressure until the tank is so far below it, then falling with the tank by a share of its fall."""
     time, read = logged.clean()
     first = float(np.interp(T_PURGE, time, read["p_tank"]))
-    return np.where(time < T_PURGE, first, first + share * (read["p_tank"] - first)) + CRACKING
+    return np.where(time < T_PURGE, first, first + share * (read["p_tank"] - first)) + cracking
 
 
 def reduced(line: Array, seed: int | None = 3) -> Observed:
@@ -99,7 +100,7 @@ def test_its_errors_are_those_of_two_sensors_one_of_which_reads_the_tank() -> No
 
 def test_what_the_model_gets_wrong_of_the_tank_is_no_news_in_its_line() -> None:
     """Of a model-form error that moves both alike, the line's share is as likely as the tank's alone."""
-    test = reduced(line_that_follows())
+    test = reduced(line_that_follows(cracking=1e4))
     tank, line = test.channels[:2]
     n = tank.time.size
     coarse = test.with_errors(100.0 * FORM_ERROR, FORM_ERROR)
@@ -175,3 +176,19 @@ def test_a_flow_through_the_check_valve_lifts_the_line_up_to_its_supply() -> Non
     assert (little <= driving).all()
     assert much[-1] == pytest.approx(driving[-1], rel=0.01)
     assert lifted(area=0.0) == pytest.approx(np.zeros(tank.size))
+
+
+@pytest.mark.parametrize(
+    "course", [lambda t: 1.0 + 0.0 * t, lambda t: 1.0 - np.exp(T_PURGE - t)], ids=["at once", "by and by"]
+)
+def test_a_valve_that_takes_a_tenth_less_once_it_is_open_says_nothing_of_the_tank(
+    course: Callable[[Array], Array],
+) -> None:
+    test = reduced(line_that_follows())
+    tank, line = test.channels[:2]
+    less = np.zeros(sum(c.time.size for c in test.channels))
+    of_line = slice(tank.time.size, tank.time.size + line.time.size)
+    for part, odd in ((VALVE, False), (5.0 * VALVE, True)):
+        less[of_line] = part * CRACKING * course(line.time)
+        white = test.whiten(less)
+        assert (float(white @ white) > 20.0) is odd

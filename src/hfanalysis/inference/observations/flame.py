@@ -125,20 +125,41 @@ class OverFlow:
     def falls(self, at: int, within: float = BEFORE) -> bool:
         """Whether the ratio has fallen to that of an instant by more than a mixture moves it ``within`` some seconds,
         in one phase."""
-        seen = (self.times[:at] >= self.times[at] - within) & (self.phase[:at] == self.phase[at])
-        before = self.ratio[:at][seen & np.isfinite(self.ratio[:at])]
+        before = self.ratio[self._before(at, within)]
         if self.phase[at] == SETTLING or not before.size:
             return False
         part = max(before.size * LOOK / BEFORE, SHORTEST)
         return bool(self.ratio[at] <= BURNING**part * before.max())
 
+    def _before(self, at: int, within: float) -> NDArray[np.intp]:
+        """Instants of the same phase ``within`` some seconds before one, of which the ratio is known."""
+        recent = (self.times[:at] >= self.times[at] - within) & (self.phase[:at] == self.phase[at])
+        return np.flatnonzero(recent & np.isfinite(self.ratio[:at]))
+
     def began(self, at: int) -> int:
         """From when on the ratio falls that is low at an instant: from the end of the liquid, or before it, where the
         fall lasts longer than the flame has burnt with vapor, for that shows no flame that burnt evenly."""
         first = self._back(at)
+        return self._in_liquid(first) if at - first >= self._with_vapor(first) else first
+
+    def begun(self, at: int) -> int:
+        """As :meth:`began`, of a slow fall: it was begun at the top, before the ratio is low, and what burns with vapor
+        for less time than shows a fall is not known to burn evenly."""
+        first = self._back(at)
+        top = self._before(first, BEFORE)
+        first = int(top[np.argmax(self.ratio[top])]) if top.size else first
+        least = max(at - first, SHORTEST * BEFORE / LOOK)
+        return self._in_liquid(first) if least >= self._with_vapor(first) else first
+
+    def _with_vapor(self, first: int) -> int:
+        """Instants since the end of the liquid, if vapor alone is known to have flowed at one of them; 0 if not."""
         dry = int((self.phase == LIQUID).sum())
-        shown = (self.phase[dry:first] == VAPOR).any() and first - dry > at - first
-        return first if shown or not 1 < dry <= first else self._back(dry - 1)
+        return first - dry if (self.phase[dry:first] == VAPOR).any() else 0
+
+    def _in_liquid(self, first: int) -> int:
+        """Where a fall begins that goes back to the end of the liquid; ``first`` where there is no liquid before it."""
+        dry = int((self.phase == LIQUID).sum())
+        return self._back(dry - 1) if 1 < dry <= first else first
 
     def _back(self, at: int) -> int:
         while at > 1 and self.falls(at):
@@ -171,7 +192,7 @@ def shown_to_burn(seen: OverFlow, ambient: float, end: float | None) -> float | 
         return None
     last = int(choked[-1])
     # what a gauge lags behind the liquid's end falls at first only
-    return float(even.times[even.began(last)]) if even.falls(last) and even.falls(last, SHORTEST * BEFORE) else None
+    return float(even.times[even.begun(last)]) if even.falls(last) and even.falls(last, SHORTEST * BEFORE) else None
 
 
 def _flows_on(times: Array, p_t: Array, out: int) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.inference.observations.channel import form_covariance
 from hfanalysis.inference.observations.frame import BLOCK
 from hfanalysis.inference.observations.recorded import ALIKE, accuracy_of, signal_of
 from hfanalysis.inference.observations.wander import wander_of
@@ -35,6 +36,11 @@ CLEAR = 5.0
 LEVEL, AROUND = 1.0, 0.1
 """Seconds before it sags in which the line's level is taken, and on either side in which the tank's pressure is."""
 
+VALVE = 0.1
+"""Part of what its check valve cracks at by which the valve may take more or less once it is open (standard deviation).
+Source: what has left its seat is held open by less than it took to open it, and a spring pushes back by more the
+further it is pressed; data sheets have a valve close again at some tenths less than it cracks at."""
+
 FEWEST = 4
 """Samples of either that this takes at least."""
 
@@ -47,7 +53,7 @@ class PurgeLine:
     What it cracks at was read of both sensors as the line began to sag (``taken`` [s]), when the tank's read
     ``at_first`` [Pa], with a standard deviation of ``read_std`` [Pa]. So the zero is that of the tank's sensor, and the
     spans, whose relative errors are ``tank_span`` and ``own_span``, err by what the pressure has changed since;
-    ``zero_std`` [Pa] is that of the tank's sensor.
+    ``zero_std`` [Pa] is that of the tank's sensor. ``cracked`` [Pa]: what it cracks at.
     """
 
     signal: Signal
@@ -58,12 +64,17 @@ class PurgeLine:
     zero_std: float
     tank_span: float
     own_span: float
+    cracked: float
 
     def zero_and_span(self, value: Array) -> Array:
         """Covariance (blocks, blocks) [Pa^2] of the line's blocks of these values (blocks,) [Pa] by errors of both
         sensors."""
         changed = self.own_span * (value - self.at_first)
         return np.asarray(self._zero**2 + self.read_std**2 + np.outer(changed, changed))
+
+    def of_the_valve(self, time: Array) -> Array:
+        """Covariance (blocks, blocks) [Pa^2] of the line at these times (blocks,) [s] by what its valve takes."""
+        return form_covariance(time, np.full(time.size, VALVE * self.cracked))
 
     def with_tank(self, tank: Array, line: Array) -> Array:
         """Covariance (blocks of the tank, blocks of the line) [Pa^2] by errors of the tank's sensor, of blocks of these
@@ -109,6 +120,7 @@ def purge_line(
         SPAN_SHARE * accuracy,
         SPAN_SHARE * accuracy / float(np.abs(tank.value).max()),
         SPAN_SHARE * accuracy_of(definition, ALIKE[1], line.value) / stood,
+        stood - float(level),
     )
 
 

@@ -88,7 +88,8 @@ def _with_second_look(
     if line is None or of_tank is None or means is None:
         return channels, None
     tank = channels[ALIKE[0]]
-    own = channel_of(means, definition, frame, None, line.zero_and_span(means.value))
+    errors = line.zero_and_span(means.value) + line.of_the_valve(means.time)
+    own = channel_of(means, definition, frame, None, errors)
     own = replace(own, span=range_of(tank.time, tank.value))
     alike = line.with_tank(tank.value, own.value) + of_the_model(of_tank, frame) @ of_the_model(means, frame).T
     return {ALIKE[0]: tank, ALIKE[1]: own, **channels}, alike
