@@ -95,10 +95,15 @@ def segments(**change: Quantity) -> Segments:
 
 
 def seen(
-    kind: type[Seen], signals: Mapping[str, Signal], steady: float = 5.0, phases: Segments | None = None
+    kind: type[Seen],
+    signals: Mapping[str, Signal],
+    steady: float = 5.0,
+    phases: Segments | None = None,
+    shown: float | None = None,
 ) -> Seen | None:
-    """What the samples show of a kind of unknown; the true phases where no others are given."""
-    return kind.in_samples(Samples(signals, phases or segments(), steady))
+    """What the samples show of a kind of unknown; the true phases where no others are given, and a flame to the end
+    where it is not ``shown`` [s after the opening] for less."""
+    return kind.in_samples(Samples(signals, phases or segments(), steady, shown))
 
 
 def reduced(of: TestLog | None = None, definition: TestDefinition | None = None, **events: Quantity) -> Observed:

@@ -49,12 +49,13 @@ def has_name(effect: Effect) -> bool:
 
 
 class Samples(NamedTuple):
-    """Signals by channel, their times [s] after the opening, the phases of the test, and how long from the opening on
-    nothing changes [s]."""
+    """Signals by channel, their times [s] after the opening, the phases of the test, how long from the opening on
+    nothing changes [s], and until when a flame is ``shown`` [s after the opening], where it is not known to burn on."""
 
     signals: Mapping[str, Signal]
     segments: Segments
     steady: float
+    shown: float | None = None
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,12 @@ def test_what_does_not_tell() -> None:
     assert failing_flow(both, early) is None
 
 
+@pytest.mark.parametrize(("shown", "is_one"), [(T_V - 0.1, False), (T_V + 0.1, False), (T_V + 0.5, True)])
+def test_where_no_flame_is_shown_the_fuel_may_have_ended(shown: float, is_one: bool) -> None:
+    found = logged.seen(FailingFlow, read(0.4, 0.08), phases=SEGMENTS, shown=shown)
+    assert (found is not None) is is_one
+
+
 def reduced(share: float) -> Observed:
     """The stand's log with a flow that fails in the last 80 ms of the liquid."""
     time, clean = logged.clean()

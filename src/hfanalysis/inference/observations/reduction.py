@@ -39,7 +39,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     segments = burning.segments
     signals = recorded(log, definition, origin)
     frame = frame_of(log, segments, definition, origin, burning.shown)
-    unknowns = in_samples(Samples(signals, segments, frame.steady))
+    unknowns = in_samples(Samples(signals, segments, frame.steady, burning.shown))
     frame = replace(frame, hidden=max((unknown.hides for unknown in unknowns), default=0.0))
     zeros = {name: log[name].zero_std for name in signals}
     reduced = {name: blocks_of(signal, frame, zeros[name] is not None) for name, signal in signals.items()}

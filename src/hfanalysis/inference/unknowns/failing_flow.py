@@ -110,6 +110,7 @@ class FailingFlow(Described):
         does not show."""
         signals, segments = samples.signals, samples.segments
         t_v, gone = segments.time("t_v"), segments.time("t_fuel_gone")
+        gone = gone if samples.shown is None else samples.shown
         if t_v is None or segments.std("t_v") > DATED or "p_tank" not in signals or not set(TOGETHER) <= set(signals):
             return None
         if t_v < COURSE + LOOKED_AT or (gone is not None and gone < t_v + LOOKED_AT):
