@@ -13,8 +13,8 @@ SETS = {
     "quick": 5_000_000,
     "development": 6_000_000,
     "calibration": 7_000_000,
-    "looked_at": 8_000_000,
-    "scored": 10_000_000,
+    "looked_at": 10_000_000,
+    "scored": 11_000_000,
 }
 """Where the seeds of each begin. Constants in the code come of ``development``; what the diagnosis says of where it was
 tried of ``calibration`` (with every engine and logger); those of ``quick`` and ``scored`` set nothing. ``looked_at``
@@ -23,7 +23,7 @@ was scored once, and changes came of what was seen there."""
 WIDE = ("calibration",)
 """Sets with all engines and loggers, laws drawn test by test; others of that kind have the first four of each."""
 
-OF_WORLDS = {"looked_at": "S", "scored": "T"}
+OF_WORLDS = {"looked_at": "T", "scored": "U"}
 """Sets of a few worlds, each with one draw of laws, one engine class and one logger in all of its tests; and what the
 names of these tests begin with."""
 

@@ -109,11 +109,14 @@ def test_a_fade_that_the_log_does_not_show_to_its_end_leaves_a_flame_up_to_where
 
 
 @pytest.mark.parametrize("gauge", [True, False])
-def test_what_burns_on_for_long_is_no_flame_that_is_shown(gauge: bool) -> None:
-    stand, true = run("together", 0.01, 0.4)
-    shown = shown_to_burn(over_flow(stand, true, end=true.t_fuel_out + 0.8, run=gauge), stand.ambient, None)
-    assert shown is not None
-    assert shown - true.t_fuel_out < 0.05
+@pytest.mark.parametrize("end", ["early", "together"])
+def test_what_burns_on_for_long_is_no_flame_that_is_shown(end: str, gauge: bool) -> None:
+    stand, true = run(end, 0.01, 0.4)
+    seen = over_flow(stand, true, end=true.t_v + 0.8, run=gauge)
+    found, shown = flame_out(seen), shown_to_burn(seen, stand.ambient, None)
+    begins = shown if found is None else found.begins
+    assert begins is not None
+    assert -0.3 < begins - true.t_fuel_out < 0.15  # a mixture that gets leaner burns hotter first
 
 
 @pytest.mark.parametrize("gauge", [True, False])

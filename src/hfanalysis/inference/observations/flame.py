@@ -131,6 +131,10 @@ class OverFlow:
         part = max(before.size * LOOK / BEFORE, SHORTEST)
         return bool(self.ratio[at] <= BURNING**part * before.max())
 
+    def goes_on_falling(self, at: int) -> bool:
+        """Whether it falls to that of an instant, and still does in the last of it."""
+        return self.falls(at) and self.falls(at, SHORTEST * BEFORE)
+
     def _before(self, at: int, within: float) -> NDArray[np.intp]:
         """Instants of the same phase ``within`` some seconds before one, of which the ratio is known."""
         recent = (self.times[:at] >= self.times[at] - within) & (self.phase[:at] == self.phase[at])
@@ -181,7 +185,8 @@ def flame_out(seen: OverFlow) -> FlameOut | None:
 
 
 def shown_to_burn(seen: OverFlow, ambient: float, end: float | None) -> float | None:
-    """Until when a flame is shown [s after the opening], where the ratio falls to the end; None where it burns on.
+    """Until when a flame is shown [s after the opening], where the ratio falls to the end, or through the end of the
+    liquid: a flow of liquid that fails is one of vapor then, and no longer falls. None where it burns on.
 
     ``ambient``: pressure [Pa]; ``end``: of the flow [s after the opening], if it is known.
     """
@@ -190,9 +195,12 @@ def shown_to_burn(seen: OverFlow, ambient: float, end: float | None) -> float | 
     choked = np.flatnonzero(np.isfinite(even.ratio) & flows & (even.chamber > CHOKED * ambient))
     if not choked.size:
         return None
-    last = int(choked[-1])
-    # what a gauge lags behind the liquid's end falls at first only
-    return float(even.times[even.begun(last)]) if even.falls(last) and even.falls(last, SHORTEST * BEFORE) else None
+    last, dry = int(choked[-1]), int((even.phase == LIQUID).sum())
+    if even.goes_on_falling(last):  # what a gauge lags behind the liquid's end falls at first only
+        return float(even.times[even.begun(last)])
+    through = 1 < dry <= last and even.goes_on_falling(dry - 1)
+    through = through and any(even.goes_on_falling(at) for at in range(dry, last))
+    return float(even.times[even.begun(dry - 1)]) if through else None
 
 
 def _flows_on(times: Array, p_t: Array, out: int) -> bool:
