@@ -117,6 +117,11 @@ class OverFlow:
         first = self.ratio[(self.phase == LIQUID) & (self.times < self.times[0] + FIRST)]
         return float(np.nanmedian(first)) if np.isfinite(first).any() else np.nan
 
+    @property
+    def wet(self) -> int:
+        """How many of the instants come before the end of the liquid."""
+        return int((self.phase == LIQUID).sum())
+
     def smooth(self) -> OverFlow:
         """The same with running means of the ratio, each over instants of one phase."""
         parts = [_running(self.ratio[self.phase == phase]) for phase in (LIQUID, SETTLING, VAPOR)]
@@ -146,7 +151,7 @@ class OverFlow:
         first = self._back(at)
         return self._in_liquid(first) if at - first >= self._with_vapor(first) else first
 
-    def begun(self, at: int) -> int:
+    def began_slowly(self, at: int) -> int:
         """As :meth:`began`, of a slow fall: it was begun at the top, before the ratio is low, and what burns with vapor
         for less time than shows a fall is not known to burn evenly."""
         first = self._back(at)
@@ -157,13 +162,11 @@ class OverFlow:
 
     def _with_vapor(self, first: int) -> int:
         """Instants since the end of the liquid, if vapor alone is known to have flowed at one of them; 0 if not."""
-        dry = int((self.phase == LIQUID).sum())
-        return first - dry if (self.phase[dry:first] == VAPOR).any() else 0
+        return first - self.wet if (self.phase[self.wet : first] == VAPOR).any() else 0
 
     def _in_liquid(self, first: int) -> int:
         """Where a fall begins that goes back to the end of the liquid; ``first`` where there is no liquid before it."""
-        dry = int((self.phase == LIQUID).sum())
-        return self._back(dry - 1) if 1 < dry <= first else first
+        return self._back(self.wet - 1) if 1 < self.wet <= first else first
 
     def _back(self, at: int) -> int:
         while at > 1 and self.falls(at):
@@ -195,12 +198,13 @@ def shown_to_burn(seen: OverFlow, ambient: float, end: float | None) -> float | 
     choked = np.flatnonzero(np.isfinite(even.ratio) & flows & (even.chamber > CHOKED * ambient))
     if not choked.size:
         return None
-    last, dry = int(choked[-1]), int((even.phase == LIQUID).sum())
+    last, with_liquid = int(choked[-1]), even.wet - 1
     if even.goes_on_falling(last):  # what a gauge lags behind the liquid's end falls at first only
-        return float(even.times[even.begun(last)])
-    through = 1 < dry <= last and even.goes_on_falling(dry - 1)
-    through = through and any(even.goes_on_falling(at) for at in range(dry, last))
-    return float(even.times[even.begun(dry - 1)]) if through else None
+        return float(even.times[even.began_slowly(last)])
+    if not (0 < with_liquid < last and even.goes_on_falling(with_liquid)):
+        return None
+    through = any(even.goes_on_falling(at) for at in range(even.wet, last))
+    return float(even.times[even.began_slowly(with_liquid)]) if through else None
 
 
 def _flows_on(times: Array, p_t: Array, out: int) -> bool:
