@@ -88,7 +88,7 @@ def worst(none: Sequence[Scored]) -> Figure:
     """Claims in the world that has most of them; its value is the lower limit of their rate."""
     worlds = dict.fromkeys(c.answer["world"] for c in none)
     found = [share(c.claims for c in none if c.answer["world"] == name) for name in worlds]
-    of = max(found, key=lambda f: f.low)
+    of = max(found, key=lambda f: f.low, default=share(()))
     return Figure(of.low, of.low, of.high, of.n)
 
 

@@ -122,6 +122,15 @@ def test_what_is_held_as_stated_is_not_doubted() -> None:
     assert found.C_i == stated["C_i"]
 
 
+@pytest.mark.parametrize(("why", "std"), [("from p_run, p_tank", 0.01), ("from p_chamber", 0.5), ("seen", 0.5)])
+def test_an_opening_that_says_where_it_is_from_rests_on_nothing_else(why: str, std: float) -> None:
+    events = {"t_open": Quantity(100.0, "s", 0.01, why=why)}
+    found = doubted(filled(Segments, events), health_of("p_chamber", "suspect", kind="lag", delay=0.5))
+    assert isinstance(found, Segments)
+    assert found.t_open.std == pytest.approx(std, rel=0.01)
+    assert found.t_open.verdict == (None if std < 0.1 else "doubted")
+
+
 def test_a_late_channel_widens_its_events() -> None:
     events = {"t_open": Quantity(100.0, "s", 0.01), "t_v": Quantity(5.0, "s", 0.01), "t_end": Quantity(8.0, "s", 0.1)}
     found = doubted(filled(Segments, events), health_of("p_run", "suspect", kind="lag", delay=0.5))

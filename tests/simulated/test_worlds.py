@@ -108,6 +108,19 @@ def test_logs_are_as_their_logger_writes_them(stand: blind.Stand, logger: str) -
         assert np.unique(np.round(log.values[:, 0] / (1500.0 / 2**of.bits), 6) % 1.0).size == 1
 
 
+def test_mains_that_a_slow_logger_folds_down_are_noise_and_no_error_of_a_sensor(stand: blind.Stand) -> None:
+    of, run = LOGGERS["25 Hz, mains noise, 14 bit"], simulated(stand, laws.plain())
+    channel = s.CHANNELS.index("p_purge")
+    moved = []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        sensors = drawn_sensors(rng, of, stand)
+        log = written(rng, stand, run, run.traces[:, :6], of, sensors)
+        rest = log.values[log.time < log.t_open - 1.0, channel]
+        moved.append(float(np.ptp(rest.reshape(-1, 25).mean(axis=1))) / sensors.white[channel])
+    assert sorted(moved)[2] > of.hum
+
+
 def test_a_third_of_the_plan_hides_nothing_and_all_stands_are_in_it() -> None:
     tests = plan()
     assert [sum(t.kind == kind for t in tests) for kind in KINDS] == [20, 28, 7, 5]
@@ -278,3 +291,5 @@ def test_the_table_counts_claims_by_world_and_what_could_be_asked_for() -> None:
     exact = rows["exact set of names, d' >= 8 and >= 4 to every rival"]
     assert (exact[2].strip(), exact[4].strip()) == ("0.500", "2")
     assert "| 1 of 1 (" in next(line for line in table(cases) if line.startswith("| B "))
+    without = [line for line in table(cases[4:]) if "where nothing is hidden" in line or "worst world" in line]
+    assert [line.split("|")[2].strip() for line in without[:2]] == ["-", "-"]

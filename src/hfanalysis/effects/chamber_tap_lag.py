@@ -62,6 +62,7 @@ EFFECT = Effect(
     ),
     phases=("liquid", "vapor", "nitrogen"),
     distort=_distort,
+    far_starts=(0.15,),  # while the channel rises a small lag is a later opening
     twins=("nozzle_throat_erosion",),
     decisive="a second transducer flush with the chamber's wall, or the throat's diameter after the test",
     believable=Believable(

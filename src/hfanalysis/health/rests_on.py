@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hfanalysis.quantity import STATED, Quantity
+from hfanalysis.record.channels import CANONICAL
 
 PRESSURES = ("p_tank", "p_run", "p_chamber")
 FIRE = ("p_chamber", "thrust")
@@ -142,6 +143,8 @@ OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""
 FROM_CELL = ("from the load cell",)
 """How it is said that a mass comes from the tank's cell."""
+FROM = "from "
+"""How the reason of a quantity begins that names the channels it comes from, of those that it may."""
 
 OF_LEVEL = ("zero", "drift", "scale", "unit", "gauge_or_absolute", "gross_mass")
 """Kinds of finding that shift or stretch a channel and leave it the shape, and with it the instants of its bends."""
@@ -156,6 +159,9 @@ def channels_of(product: str, name: str, quantity: Quantity) -> tuple[str, ...]:
         return ()
     if any(words in told for words in FROM_CELL):
         return ("m_tank",)
+    named = tuple(told.removeprefix(FROM).split(", ")) if told.startswith(FROM) else ()
+    if named and CANONICAL.keys() >= set(named):
+        return named
     found = rests(product, name)
     return (*found, "thrust") if product.endswith(TOGETHER) and found == PRESSURES else found
 
