@@ -184,19 +184,25 @@ def test_a_large_effect_is_found_where_a_fit_of_all_at_once_ended_at_a_small_siz
     assert found.fit.values["chamber_tap_lag.lag"] == pytest.approx(0.25, abs=0.03)
 
 
-def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [("grain_pressure_regression", {"exponent": 0.9, "bend": 0.6}), ("chamber_tap_lag", {"lag": 0.18})],
+)
+def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(
+    name: str, size: dict[str, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Where small strengths lead nowhere."""
-    grain = effect("grain_pressure_regression")
-    bench = Bench(made.observed(grain.at(exponent=0.9, bend=0.6)))
+    hidden = effect(name)
+    bench = Bench(made.observed(hidden.at(**size)))
     fitted = attempted(made.hypothesis(), bench.at(FINEST), np.zeros(made.hypothesis().size))
     assert fitted is not None
     base = candidate((), fitted, FINEST)
     promising = singles._promising
     monkeypatch.setattr(singles, "_promising", lambda *of: (promising(*of)[0], []))
     monkeypatch.setattr(singles, "WELL_FITTED", np.inf)  # nor is a moderate size tried
-    for one, seen in ((grain, True), (replace(grain, far_starts=()), False)):
-        found = _first_children(base, [], Search(bench, Catalogue({grain.name: one}, {})), [grain.name])
-        assert [c.names for c in found] == [(grain.name,)] * seen
+    for one, seen in ((hidden, True), (replace(hidden, far_starts=()), False)):
+        found = _first_children(base, [], Search(bench, Catalogue({name: one}, {})), [name])
+        assert [c.names for c in found] == [(name,)] * seen
         assert all(c.log_evidence > base.log_evidence + 5.0 for c in found)
 
 

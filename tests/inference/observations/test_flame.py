@@ -13,7 +13,17 @@ from simulated.worlds import laws
 from simulated.worlds.engines import drawn, simulated
 from tests.segment.stand import signal
 
-from hfanalysis.inference.observations.flame import FlameOut, OverFlow, flame_out, shown_to_burn
+from hfanalysis.inference.observations.flame import (
+    BEFORE,
+    LIQUID,
+    SETTLES,
+    SETTLING,
+    VAPOR,
+    FlameOut,
+    OverFlow,
+    flame_out,
+    shown_to_burn,
+)
 from hfanalysis.thermo.nitrous import saturation
 
 FADES = (0.01, 0.03, 0.3)
@@ -141,3 +151,21 @@ def test_a_tap_that_lags_is_no_fade() -> None:
     traces[:, s.P_CHAMBER] = read
     seen = over_flow(stand, replace(true, traces=traces), end=min(true.t_v + 1.0, stand.closing))
     assert shown_to_burn(seen, stand.ambient, None) is None
+
+
+@pytest.mark.parametrize("fails", [False, True], ids=["a flame", "a flow"])
+def test_a_fall_through_the_end_of_the_liquid_is_a_flames_and_one_that_ends_there_a_flows(fails: bool) -> None:
+    """The flame's own fall slows down, and comes to rest at what hot oxidizer alone has; a flow that fails is one of
+    vapor after the end of the liquid."""
+    began, t_v, rest, times = 3.8, 4.3, 0.65, np.arange(0.32, 7.0, 0.04)
+    phase = (times >= t_v) * SETTLING + (times >= t_v + SETTLES) * (VAPOR - SETTLING)
+    ratio = rest + (1.0 - rest) * np.exp(-np.maximum(times - began, 0.0) / 0.5)
+    if fails:
+        ratio = np.where(phase == LIQUID, ratio, 1.0)
+    seen = OverFlow(times, 3e6 - 3e5 * times, np.full(times.size, 1e6), ratio, phase)
+    shown = shown_to_burn(seen, 1e5, None)
+    if fails:
+        assert shown is None
+    else:  # on a level course the top may be anywhere within BEFORE
+        assert shown is not None
+        assert began - BEFORE - 0.05 < shown < began + 0.05

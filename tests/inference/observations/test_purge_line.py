@@ -99,7 +99,11 @@ def test_its_errors_are_those_of_two_sensors_one_of_which_reads_the_tank() -> No
 
 
 def test_what_the_model_gets_wrong_of_the_tank_is_no_news_in_its_line() -> None:
-    """Of a model-form error that moves both alike, the line's share is as likely as the tank's alone."""
+    """Of a model-form error that moves both alike, the line's share is as likely as the tank's alone.
+
+    Behind a valve that cracks at little, of which a tenth is less than the model's error: else the line may be off by
+    itself.
+    """
     test = reduced(line_that_follows(cracking=1e4))
     tank, line = test.channels[:2]
     n = tank.time.size
