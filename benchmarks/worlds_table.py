@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from math import sqrt
 from statistics import median
 from typing import Any
 
+import numpy as np
 from benchmarks.practice import EQUATIONS
 from benchmarks.worlds import SURE, Scored
-from simulated.blind.figures import Figure, share
+from simulated.blind.figures import NOTHING, Figure, share
 from simulated.blind.judged import Case
 from simulated.blind.score import reliability
+
+from hfanalysis.diagnose.answer.posterior import BEFORE
 
 SEEN, APART = 8.0, 4.0
 """d' of what is hidden, and to the rival most like it, from which on it can be asked for."""
@@ -33,6 +38,8 @@ def table(cases: Sequence[Scored]) -> list[str]:
         (f"outsiders at d' >= {SEEN:.0f}: unknown, and in the right equation",
          share(c.exact and placed(c) for c in outside), "0.75", "0.90"),
         ("calibration error (debiased)", error_of(cases), "0.06", "0.03"),
+        (f"the same, {BEFORE['none']:.0%} of tests hiding nothing and {BEFORE['unknown']:.0%} what no name is for",
+         error_by_odds(cases), "-", "-"),
     ]  # fmt: skip
     return [
         "| figure | found | 95 % limits | tests | must | aim |",
@@ -119,3 +126,40 @@ def as_case(case: Scored) -> Case:
 def error_of(cases: Sequence[Scored]) -> Figure:
     """How far stated probabilities are from the shares that are right."""
     return reliability([as_case(c) for c in cases])[0]
+
+
+ODDS = {"none": BEFORE["none"], "single": BEFORE["named"], "outside": BEFORE["unknown"]}
+"""What is hidden before a test, as probabilities are stated for; the tests here are of another mix, by which how often
+nothing is hidden is known well."""
+
+BINS = 10
+"""As for the other calibration errors."""
+
+
+def error_by_odds(cases: Sequence[Scored]) -> Figure:
+    """As :func:`error_of`, each test with a weight by which all kinds are as frequent as before a test (ODDS).
+
+    A share of weighted outcomes is as noisy as one of ``(sum w)^2 / sum w^2`` tests (Kish: Survey Sampling, 1965).
+    """
+    stated = sorted(
+        ((c.probability, float(c.stated == c.truth), c.kind) for c in map(as_case, cases) if c.posterior),
+        key=lambda row: row[0],
+    )
+    stated = [row for row in stated if row[2] in ODDS]
+    if len(stated) < 2:
+        return NOTHING
+    number = Counter(kind for _, _, kind in stated)
+    weight = np.array([ODDS[kind] / number[kind] for _, _, kind in stated])
+    weight /= weight.sum()
+    value = np.array([row[:2] for row in stated])
+    bins = np.minimum((BINS * (np.cumsum(weight) - 0.5 * weight)).astype(int), BINS - 1)
+    square = spread = 0.0
+    for k in np.unique(bins):
+        w, v = weight[bins == k], value[bins == k]
+        mean, right = np.average(v, axis=0, weights=w)
+        noise = right * (1.0 - right) / max(w.sum() ** 2 / (w**2).sum() - 1.0, 1.0)
+        excess = (mean - right) ** 2 - noise
+        square += w.sum() * excess
+        spread += w.sum() ** 2 * (4.0 * max(excess, 0.0) * noise + 2.0 * noise**2)
+    found, low, high = (sqrt(max(square + z * sqrt(spread), 0.0)) for z in (0.0, -1.96, 1.96))
+    return Figure(found, low, high, len(stated))

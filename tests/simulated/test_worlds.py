@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from benchmarks.reference_engine import Reference
 from benchmarks.worlds import Scored, Study, figures, found_path, refused, run_one, scored
-from benchmarks.worlds_table import table
+from benchmarks.worlds_table import error_by_odds, error_of, table
 from simulated.blind import nitrous
 from simulated.blind import slots as s
 from simulated.blind import stand as blind
@@ -293,3 +293,21 @@ def test_the_table_counts_claims_by_world_and_what_could_be_asked_for() -> None:
     assert "| 1 of 1 (" in next(line for line in table(cases) if line.startswith("| B "))
     without = [line for line in table(cases[4:]) if "where nothing is hidden" in line or "worst world" in line]
     assert [line.split("|")[2].strip() for line in without[:2]] == ["-", "-"]
+
+
+def test_what_is_right_by_the_odds_before_a_test_is_no_error_where_most_tests_hide_nothing() -> None:
+    """Of tests in which nothing is stated 0.25 of 0.25 + 0.6 hide nothing where kinds are as frequent as that."""
+
+    def stated(kind: str, p: float) -> Scored:
+        hidden = {} if kind == "none" else {"fuel_sliver": {"d_prime": 20.0, "inside_library": True}}
+        product = {"verdict": "none", "effects": [], "posterior": {"none": p, "tank_heat": 0.0}}
+        return Scored({"id": "x", "kind": kind, "effects": hidden}, product, 5.0, "")
+
+    def mixed(p: float) -> list[Scored]:
+        return [*[stated("none", p)] * 5, stated("single", p)] * 200
+
+    right = 0.25 / 0.85
+    assert error_of(mixed(right)).value == pytest.approx(5 / 6 - right, abs=0.01)
+    assert error_by_odds(mixed(right)).value < 0.05
+    assert error_by_odds(mixed(0.9)).value == pytest.approx(0.9 - right, abs=0.01)
+    assert error_by_odds(mixed(right)[:1]).n == 0
